@@ -181,7 +181,8 @@ typedef struct recede_params {
 typedef enum recede_param_type {
   RECEDE_PARAM_DOUBLE,
   RECEDE_PARAM_INT,
-  RECEDE_PARAM_CHOICE
+  RECEDE_PARAM_CHOICE,
+  RECEDE_PARAM_POINTS /* numbers separated by commas, count of them */
 } recede_param_type;
 
 typedef enum recede_param_flags {
@@ -200,6 +201,8 @@ typedef struct recede_param_info {
   const char *const *choices;             /* NULL-terminated nicks, or NULL */
   const char *const *choice_labels;       /* to be translated */
   unsigned flags;
+  int count;     /* numbers it holds: 1, POINTS more */
+  size_t offset; /* in recede_params: double, int or int64_t (seed), the enum, double[count] */
 } recede_param_info;
 
 /* The table, read-only, *count rows. */

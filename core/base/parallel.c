@@ -1,0 +1,112 @@
+#include "base/parallel.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdlib.h>
+
+struct rc_pool {
+  pthread_mutex_t lock;
+  pthread_cond_t wake, done;
+  pthread_t threads[64];
+  int thread_count, started;
+  bool stop;
+  unsigned round; /* counts calls of rc_parallel; a worker works once a round */
+  int busy;
+  rc_context *context;
+  rc_work *work;
+  void *user;
+  int count;
+  atomic_int next;
+};
+
+static void take_items(rc_pool *pool, int thread) {
+  for (;;) {
+    if (rc_cancelled(pool->context)) return;
+    int item = atomic_fetch_add_explicit(&pool->next, 1, memory_order_relaxed);
+    if (item >= pool->count) return;
+    pool->work(pool->user, item, thread);
+    if (thread == 0) rc_poll(pool->context);
+  }
+}
+
+static void *worker(void *argument) {
+  rc_pool *pool = argument;
+  pthread_mutex_lock(&pool->lock);
+  int thread = ++pool->started;
+  unsigned seen = 0;
+  for (;;) {
+    while (!pool->stop && pool->round == seen) pthread_cond_wait(&pool->wake, &pool->lock);
+    if (pool->stop) break;
+    seen = pool->round;
+    pthread_mutex_unlock(&pool->lock);
+    take_items(pool, thread);
+    pthread_mutex_lock(&pool->lock);
+    if (--pool->busy == 0) pthread_cond_signal(&pool->done);
+  }
+  pthread_mutex_unlock(&pool->lock);
+  return NULL;
+}
+
+/* Workers take no signals: they belong to the host's own threads. */
+static void start_workers(rc_pool *pool, int wanted) {
+  sigset_t all, old;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &old);
+  while (pool->thread_count < wanted &&
+         pthread_create(&pool->threads[pool->thread_count], NULL, worker, pool) == 0)
+    pool->thread_count++;
+  pthread_sigmask(SIG_SETMASK, &old, NULL);
+}
+
+/* NULL when there is no memory for it: the calling thread then does all the work. */
+static rc_pool *pool_of(rc_context *context) {
+  if (context->pool || context->threads < 2) return context->pool;
+  rc_pool *pool = calloc(1, sizeof *pool);
+  if (!pool) return NULL;
+  pthread_mutex_init(&pool->lock, NULL);
+  pthread_cond_init(&pool->wake, NULL);
+  pthread_cond_init(&pool->done, NULL);
+  context->pool = pool;
+  start_workers(pool, context->threads - 1);
+  return pool;
+}
+
+recede_status rc_parallel(rc_context *context, int count, rc_work *work, void *user) {
+  rc_pool *pool = count > 1 ? pool_of(context) : NULL;
+  rc_pool alone = {.context = context};
+  if (!pool) pool = &alone;
+  if (pool != &alone) pthread_mutex_lock(&pool->lock);
+  pool->context = context;
+  pool->work = work;
+  pool->user = user;
+  pool->count = count;
+  atomic_store(&pool->next, 0);
+  pool->busy = pool->thread_count;
+  if (pool != &alone) {
+    pool->round++;
+    pthread_cond_broadcast(&pool->wake);
+    pthread_mutex_unlock(&pool->lock);
+  }
+  take_items(pool, 0);
+  if (pool != &alone) {
+    pthread_mutex_lock(&pool->lock);
+    while (pool->busy > 0) pthread_cond_wait(&pool->done, &pool->lock);
+    pthread_mutex_unlock(&pool->lock);
+  }
+  return rc_cancelled(context) ? rc_poll(context) : RECEDE_OK;
+}
+
+void rc_pool_free(rc_context *context) {
+  rc_pool *pool = context->pool;
+  if (!pool) return;
+  pthread_mutex_lock(&pool->lock);
+  pool->stop = true;
+  pthread_cond_broadcast(&pool->wake);
+  pthread_mutex_unlock(&pool->lock);
+  for (int i = 0; i < pool->thread_count; i++) pthread_join(pool->threads[i], NULL);
+  pthread_cond_destroy(&pool->wake);
+  pthread_cond_destroy(&pool->done);
+  pthread_mutex_destroy(&pool->lock);
+  free(pool);
+  context->pool = NULL;
+}

@@ -1,0 +1,18 @@
+/* The only file that knows threads. Plain pthreads that sleep while there is nothing to do: OpenMP's
+ * spinning threads cost seconds on a loaded machine, and its races cannot be told from false ones by
+ * ThreadSanitizer. */
+#ifndef RECEDE_BASE_PARALLEL_H
+#define RECEDE_BASE_PARALLEL_H
+
+#include "base/context.h"
+
+/* Calls work(user, item, thread) once for each item in 0..count-1, in any order, on
+ * context->threads threads; thread is 0..threads-1 and names scratch memory. Items must write
+ * disjoint memory and read nothing that another item writes: then the result is the same for any
+ * number of threads. work must not allocate, fail or call the host. Between items of its own the
+ * calling thread polls the host; RECEDE_CANCELLED leaves the rest undone. */
+typedef void rc_work(void *user, int item, int thread);
+recede_status rc_parallel(rc_context *context, int count, rc_work *work, void *user);
+void rc_pool_free(rc_context *context);
+
+#endif

@@ -1,0 +1,39 @@
+/* Pixels inside the core: floats, interleaved, 1 or 3 colour channels; and one byte a pixel for what
+ * a pixel is. */
+#ifndef RECEDE_IMAGE_IMAGE_H
+#define RECEDE_IMAGE_IMAGE_H
+
+#include "base/context.h"
+
+typedef struct rc_image {
+  int width, height, channels;
+  float *data;
+} rc_image;
+
+/* What a pixel is. TARGET: to be filled. KNOWN: has a value that must be continued. SOURCE: known,
+ * and may be copied from. 0: nothing there (transparent, not finite, beyond the horizon). */
+enum { RC_TARGET = 1, RC_KNOWN = 2, RC_SOURCE = 4 };
+
+typedef struct rc_mask {
+  int width, height;
+  uint8_t *data;
+} rc_mask;
+
+typedef struct rc_box {
+  int x0, y0, x1, y1; /* x0 <= x < x1 */
+} rc_box;
+
+recede_status rc_image_new(rc_context *context, int width, int height, int channels,
+                           rc_image *image);
+recede_status rc_mask_new(rc_context *context, int width, int height, rc_mask *mask);
+static inline float *rc_pixel(const rc_image *image, int x, int y) {
+  return image->data + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;
+}
+static inline uint8_t *rc_flag(const rc_mask *mask, int x, int y) {
+  return mask->data + (size_t)y * (size_t)mask->width + (size_t)x;
+}
+static inline bool rc_inside(int width, int height, int x, int y) {
+  return x >= 0 && y >= 0 && x < width && y < height;
+}
+
+#endif

@@ -1,0 +1,13 @@
+/* Orientation read from a picture. */
+#ifndef RECEDE_PLANE_ESTIMATE_H
+#define RECEDE_PLANE_ESTIMATE_H
+
+#include "image/image.h"
+
+/* image is the whole picture or a smaller copy of it; only pixels with RC_SOURCE are looked at.
+ * *plane gets image's own size and the given field of view; *confidence 0..1. RECEDE_NO_PLANE when
+ * nothing can be said (too few pixels, no texture). */
+recede_status rc_estimate_plane(rc_context *context, const rc_image *image, const rc_mask *flags,
+                                double fov_deg, recede_plane *plane, double *confidence);
+
+#endif

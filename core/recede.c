@@ -1,0 +1,445 @@
+/* Entry points of the library: validate, plan, run, write back. */
+#include "recede.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/context.h"
+#include "base/memory.h"
+#include "image/view.h"
+#include "plane/estimate.h"
+#include "synthesis/problem_build.h"
+
+/* Orientation is read from a copy of the picture no longer than this: the estimate's accuracy does
+ * not gain from more, its time does. */
+#define ESTIMATE_LONGEST_PX 1000
+
+struct recede_job {
+  rc_context context;
+  recede_params params;
+  recede_view image, mask, source; /* data NULL: not set */
+};
+
+void recede_host_init(recede_host *host) {
+  memset(host, 0, sizeof *host);
+  host->struct_size = sizeof *host;
+  host->kernel = -1;
+}
+
+recede_job *recede_job_new(const recede_host *host) {
+  recede_job *job = calloc(1, sizeof *job);
+  if (!job) return NULL;
+  rc_context_init(&job->context, host);
+  recede_params_init(&job->params);
+  return job;
+}
+
+void recede_job_free(recede_job **job) {
+  if (!*job) return;
+  rc_context_clear(&(*job)->context);
+  free(*job);
+  *job = NULL;
+}
+
+const char *recede_job_message(const recede_job *job) { return job->context.message; }
+const recede_report *recede_job_report(const recede_job *job) { return &job->context.report; }
+void recede_job_cancel(recede_job *job) { atomic_store(&job->context.cancelled, 1); }
+
+static recede_status set_view(recede_job *job, recede_view *held, const recede_view *view,
+                              const char *name, int channels) {
+  job->context.message[0] = '\0';
+  RC_TRY(rc_view_check(&job->context, view, name, channels));
+  *held = *view;
+  return RECEDE_OK;
+}
+
+recede_status recede_job_set_image(recede_job *job, const recede_view *image) {
+  return set_view(job, &job->image, image, "Image", 0);
+}
+recede_status recede_job_set_mask(recede_job *job, const recede_view *mask) {
+  return set_view(job, &job->mask, mask, "Mask", 1);
+}
+recede_status recede_job_set_source(recede_job *job, const recede_view *source) {
+  if (source) return set_view(job, &job->source, source, "Source mask", 1);
+  job->source.data = NULL;
+  return RECEDE_OK;
+}
+
+recede_status recede_job_set_params(recede_job *job, const recede_params *params) {
+  recede_params checked;
+  char text[256], message[400];
+  size_t rows;
+  const recede_param_info *table = recede_param_table(&rows);
+  recede_params_init(&checked);
+  for (size_t i = 0; i < rows; i++) {
+    recede_params_get(params, table[i].key, text, sizeof text);
+    if (recede_params_set(&checked, table[i].key, text, message, sizeof message) != RECEDE_OK)
+      return rc_fail(&job->context, RECEDE_ARGUMENT, "%s.", message);
+  }
+  job->params = *params;
+  return RECEDE_OK;
+}
+
+static recede_status begin(recede_job *job) {
+  rc_context *context = &job->context;
+  rc_release(context, NULL);
+  memset(&context->report, 0, sizeof context->report);
+  context->message[0] = '\0';
+  context->peak_bytes = context->allocations = 0;
+  context->fraction = context->last_poll = 0;
+  context->stage = NULL;
+  context->report.threads = context->threads;
+  context->report.seed = job->params.seed;
+  context->report.method = job->params.method;
+  context->report.surface = job->params.surface;
+  if (!job->image.data)
+    return rc_fail(context, RECEDE_ARGUMENT, "No image was given.");
+  return RECEDE_OK;
+}
+
+/* Every way out of a run. */
+static recede_status end(recede_job *job, recede_status status) {
+  rc_context *context = &job->context;
+  rc_stage_end(context);
+  context->report.peak_bytes = context->peak_bytes;
+  rc_release(context, NULL);
+  atomic_store(&context->cancelled, 0);
+  if (status == RECEDE_OK) context->message[0] = '\0';
+  return status;
+}
+
+static recede_status check_same_size(recede_job *job, const recede_view *view, const char *name) {
+  if (!view->data || (view->width == job->image.width && view->height == job->image.height))
+    return RECEDE_OK;
+  return rc_fail(&job->context, RECEDE_ARGUMENT,
+                 "The %s is %d x %d px, the image %d x %d: they must be the same size.", name,
+                 view->width, view->height, job->image.width, job->image.height);
+}
+
+static rc_views views_of(const recede_job *job) {
+  return (rc_views){&job->image, job->mask.data ? &job->mask : NULL,
+                    job->source.data ? &job->source : NULL};
+}
+
+/* ----------------------------------------------------------------------------- orientation -- */
+
+static recede_status estimate_orientation(recede_job *job, double fov_deg, recede_plane *plane,
+                                          double *confidence) {
+  rc_context *context = &job->context;
+  int longest = job->image.width > job->image.height ? job->image.width : job->image.height;
+  int factor = (longest + ESTIMATE_LONGEST_PX - 1) / ESTIMATE_LONGEST_PX;
+  rc_views views = views_of(job);
+  rc_image image;
+  rc_mask flags;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(rc_stage(context, "orientation", 0, .03));
+  RC_TRY(rc_shrink(context, &views, factor, &image, &flags));
+  RC_TRY(rc_estimate_plane(context, &image, &flags, fov_deg, plane, confidence));
+  rc_release(context, mark);
+  plane->focal_px *= (double)longest / (image.width > image.height ? image.width : image.height);
+  plane->width = job->image.width;
+  plane->height = job->image.height;
+  return RECEDE_OK;
+}
+
+static recede_status degenerate(recede_job *job, recede_status status, const char *what) {
+  return status == RECEDE_OK
+             ? RECEDE_OK
+             : rc_fail(&job->context, status,
+                       "The %s does not give a plane: its points must be distinct, in order around "
+                       "it, and apart from what is filled.",
+                       what);
+}
+
+/* (on_x, on_y) lies on the plane; size is that of the plane's image. */
+static recede_status resolve_plane(recede_job *job, int width, int height, double on_x, double on_y,
+                                   recede_orientation *orientation) {
+  const recede_params *p = &job->params;
+  recede_plane *plane = &orientation->plane;
+  orientation->confidence = 1;
+  switch (p->orientation) {
+    case RECEDE_ORIENTATION_ANGLES:
+      return recede_plane_from_angles(width, height, p->slant_deg, p->tilt_deg, p->fov_deg, plane);
+    case RECEDE_ORIENTATION_FRONTAL:
+      return recede_plane_from_angles(width, height, 0, 0, p->fov_deg, plane);
+    case RECEDE_ORIENTATION_HORIZON:
+      return degenerate(job,
+                        recede_plane_from_horizon(width, height, p->fov_deg, p->horizon[0],
+                                                  p->horizon[1], p->horizon[2], p->horizon[3], on_x,
+                                                  on_y, plane),
+                        "horizon");
+    case RECEDE_ORIENTATION_QUAD:
+      return degenerate(
+          job, recede_plane_from_quad(width, height, p->fov_deg, p->quad, 1, plane), "quad");
+    default: break;
+  }
+  orientation->estimated = 1;
+  return estimate_orientation(job, p->fov_deg, plane, &orientation->confidence);
+}
+
+static void describe(recede_orientation *orientation) {
+  recede_plane_angles(&orientation->plane, &orientation->slant_deg, &orientation->tilt_deg,
+                      &orientation->fov_deg);
+  if (!recede_plane_horizon(&orientation->plane, orientation->horizon))
+    for (int i = 0; i < 4; i++) orientation->horizon[i] = NAN;
+}
+
+/* Without a trusted estimate there is one honest fill left: the frontal one, and that is said. */
+static recede_status fall_back(recede_job *job, recede_status status,
+                               recede_orientation *orientation) {
+  if (!orientation->estimated) return status;
+  if (status != RECEDE_OK && status != RECEDE_NO_PLANE) return status;
+  if (status == RECEDE_OK && orientation->confidence >= RECEDE_CONFIDENCE_LOW) return RECEDE_OK;
+  rc_warn(&job->context,
+          "The orientation could not be read from the picture with confidence (%.2f); it was filled "
+          "without perspective. Give slant and tilt, or a horizon.",
+          status == RECEDE_OK ? orientation->confidence : 0.);
+  if (status != RECEDE_OK) orientation->confidence = 0;
+  return recede_plane_from_angles(job->image.width, job->image.height, 0, 0, job->params.fov_deg,
+                                  &orientation->plane);
+}
+
+static recede_status orient(recede_job *job, recede_orientation *orientation) {
+  double x = (job->image.width - 1) / 2., y = (job->image.height - 1) / 2.;
+  rc_target_summary summary;
+  memset(orientation, 0, sizeof *orientation);
+  RC_TRY(check_same_size(job, &job->mask, "mask"));
+  RC_TRY(check_same_size(job, &job->source, "source mask"));
+  if (job->mask.data) {
+    RC_TRY(rc_summarize_target(&job->context, &job->mask, &summary));
+    x = summary.x, y = summary.y;
+  } else {
+    y = job->image.height - 1; /* a horizon alone: the plane is what lies at the bottom */
+  }
+  RC_TRY(resolve_plane(job, job->image.width, job->image.height, x, y, orientation));
+  describe(orientation);
+  return RECEDE_OK;
+}
+
+recede_status recede_job_orient(recede_job *job, recede_orientation *orientation) {
+  recede_status status = begin(job);
+  if (status == RECEDE_OK) status = orient(job, orientation);
+  return end(job, status);
+}
+
+/* ------------------------------------------------------------------------------------ fill -- */
+
+static uint64_t pixels_in(rc_box box) {
+  return (uint64_t)(box.x1 - box.x0) * (uint64_t)(box.y1 - box.y0);
+}
+
+static uint64_t bytes_of_fill(const recede_job *job, uint64_t pixels, uint64_t target) {
+  int colours = job->image.channels < 3 ? 1 : 3;
+  uint64_t problem = pixels * (uint64_t)(2 * colours * 4 + 1) + ((uint64_t)4 << 20);
+  return problem + (job->params.method == RECEDE_METHOD_PLANE
+                        ? rc_plane_bytes(pixels, target, colours, &job->params)
+                        : rc_paper_bytes(pixels, target, colours, &job->params));
+}
+
+static recede_status refuse_too_large(rc_context *context, uint64_t bytes) {
+  context->report.estimated_bytes = bytes;
+  if (bytes <= context->limit_bytes) return RECEDE_OK;
+  return rc_fail(context, RECEDE_TOO_LARGE,
+                 "This fill needs up to %llu MiB, the limit is %llu MiB. Raise the limit, fill a "
+                 "smaller region or scale the picture down.",
+                 (unsigned long long)(bytes >> 20) + 1,
+                 (unsigned long long)(context->limit_bytes >> 20));
+}
+
+static recede_status plan_fill(recede_job *job, rc_target_summary *summary) {
+  if (!job->mask.data)
+    return rc_fail(&job->context, RECEDE_ARGUMENT, "No mask was given: nothing says what to fill.");
+  RC_TRY(check_same_size(job, &job->mask, "mask"));
+  RC_TRY(check_same_size(job, &job->source, "source mask"));
+  RC_TRY(rc_summarize_target(&job->context, &job->mask, summary));
+  rc_box box = rc_problem_box(summary, job->image.width, job->image.height);
+  return refuse_too_large(&job->context, bytes_of_fill(job, pixels_in(box), summary->pixels));
+}
+
+recede_status recede_job_estimate_fill(recede_job *job, uint64_t *bytes, double *seconds) {
+  rc_target_summary summary;
+  recede_status status = begin(job);
+  if (status == RECEDE_OK) status = plan_fill(job, &summary);
+  if (status == RECEDE_OK || status == RECEDE_TOO_LARGE) {
+    *bytes = job->context.report.estimated_bytes;
+    *seconds = 1e-5 * (double)summary.pixels; /* measured: about 10 us a target pixel */
+  }
+  return end(job, status);
+}
+
+static recede_status check_result(recede_job *job, const recede_view *result, bool same_size) {
+  RC_TRY(rc_view_check(&job->context, result, "Result", job->image.channels));
+  if (result->type != job->image.type || (same_size && (result->width != job->image.width ||
+                                                        result->height != job->image.height)))
+    return rc_fail(&job->context, RECEDE_ARGUMENT, "Result: its %s must be the image's.",
+                   result->type != job->image.type ? "type" : "size");
+  return RECEDE_OK;
+}
+
+static void copy_pixels(const recede_view *from, const recede_view *to) {
+  if (from->data == to->data) return;
+  for (int y = 0; y < from->height; y++)
+    memcpy(rc_view_pixel(to, 0, y), rc_view_pixel(from, 0, y),
+           (size_t)from->width * (size_t)from->channels * rc_type_bytes(from->type));
+}
+
+/* One pixel of the result: the fill laid over what was there, by the mask's value. */
+static void blend_pixel(const recede_view *result, int x, int y, const float *fill, float amount) {
+  float pixel[4];
+  int channels = result->channels, colours = channels < 3 ? 1 : 3;
+  bool alpha = colours < channels;
+  rc_view_read(result, x, y, 1, pixel);
+  float old_alpha = alpha && isfinite(pixel[colours]) ? fminf(fmaxf(pixel[colours], 0), 1) : 1.f;
+  float new_alpha = amount + old_alpha * (1 - amount);
+  for (int k = 0; k < colours; k++) {
+    float old = isfinite(pixel[k]) && old_alpha > 0 ? pixel[k] : fill[k];
+    pixel[k] = amount >= 1 ? fill[k] : (fill[k] * amount + old * old_alpha * (1 - amount)) / new_alpha;
+  }
+  if (alpha) pixel[colours] = new_alpha;
+  rc_view_write(result, x, y, 1, pixel);
+}
+
+static void write_fill(const recede_job *job, const rc_problem *problem, const rc_image *filled,
+                       const recede_view *result) {
+  copy_pixels(&job->image, result);
+  for (int y = problem->target.y0; y < problem->target.y1; y++)
+    for (int x = problem->target.x0; x < problem->target.x1; x++) {
+      float amount;
+      if (!(*rc_flag(&problem->flags, x, y) & RC_TARGET)) continue;
+      rc_view_read(&job->mask, problem->origin_x + x, problem->origin_y + y, 1, &amount);
+      blend_pixel(result, problem->origin_x + x, problem->origin_y + y, rc_pixel(filled, x, y),
+                  fminf(amount, 1));
+    }
+}
+
+static recede_status run_method(recede_job *job, const rc_problem *problem, rc_image *filled) {
+  rc_context *context = &job->context;
+  RC_TRY(rc_image_new(context, problem->image.width, problem->image.height, problem->image.channels,
+                      filled));
+  memcpy(filled->data, problem->image.data,
+         (size_t)filled->width * (size_t)filled->height * (size_t)filled->channels * sizeof(float));
+  return job->params.method == RECEDE_METHOD_PLANE
+             ? rc_fill_plane(context, problem, &job->params, filled)
+             : rc_fill_paper(context, problem, &job->params, filled);
+}
+
+static recede_status fill(recede_job *job, const recede_view *result) {
+  rc_context *context = &job->context;
+  rc_target_summary summary;
+  rc_problem problem;
+  rc_image filled;
+  recede_orientation *orientation = &context->report.orientation;
+  RC_TRY(rc_stage(context, "prepare", 0, .01));
+  RC_TRY(check_result(job, result, true));
+  RC_TRY(plan_fill(job, &summary));
+  RC_TRY(fall_back(job,
+                   resolve_plane(job, job->image.width, job->image.height, summary.x, summary.y,
+                                 orientation),
+                   orientation));
+  describe(orientation);
+  RC_TRY(rc_stage(context, "prepare", .03, .05));
+  rc_views views = views_of(job);
+  RC_TRY(rc_problem_of_fill(context, &views, &orientation->plane, &summary, &problem));
+  RC_TRY(run_method(job, &problem, &filled));
+  RC_TRY(rc_stage(context, "write", .97, 1));
+  write_fill(job, &problem, &filled, result);
+  context->report.output_hash = rc_view_hash(result);
+  return RECEDE_OK;
+}
+
+recede_status recede_job_fill(recede_job *job, const recede_view *result) {
+  recede_status status = begin(job);
+  return end(job, status == RECEDE_OK ? fill(job, result) : status);
+}
+
+/* ------------------------------------------------------------------------------ synthesize -- */
+
+static recede_status plan_synthesis(recede_job *job, int width, int height) {
+  if (width < 1 || height < 1 || width > 1 << 20 || height > 1 << 20)
+    return rc_fail(&job->context, RECEDE_ARGUMENT, "The size %d x %d is outside 1..1048576.", width,
+                   height);
+  RC_TRY(check_same_size(job, &job->source, "source mask"));
+  uint64_t pixels = (uint64_t)width * (uint64_t)height;
+  uint64_t exemplar = (uint64_t)job->image.width * (uint64_t)job->image.height;
+  return refuse_too_large(&job->context, bytes_of_fill(job, pixels + exemplar, pixels));
+}
+
+recede_status recede_job_estimate_synthesize(recede_job *job, int width, int height,
+                                             uint64_t *bytes, double *seconds) {
+  recede_status status = begin(job);
+  if (status == RECEDE_OK) status = plan_synthesis(job, width, height);
+  if (status == RECEDE_OK || status == RECEDE_TOO_LARGE) {
+    *bytes = job->context.report.estimated_bytes;
+    *seconds = 1e-5 * (double)width * height;
+  }
+  return end(job, status);
+}
+
+static void write_synthesis(const rc_image *made, const rc_mask *flags, const recede_view *result) {
+  for (int y = 0; y < result->height; y++)
+    for (int x = 0; x < result->width; x++) {
+      float pixel[4] = {0, 0, 0, 0};
+      int colours = made->channels;
+      bool there = !flags || *rc_flag(flags, x, y);
+      if (there) memcpy(pixel, rc_pixel(made, x, y), (size_t)colours * sizeof *pixel);
+      pixel[colours] = there ? 1 : 0;
+      rc_view_write(result, x, y, 1, pixel);
+    }
+}
+
+static recede_status synthesize_in_plane(recede_job *job, const recede_plane *plane,
+                                         const recede_view *result) {
+  rc_views views = {&job->image, NULL, job->source.data ? &job->source : NULL};
+  rc_problem problem;
+  rc_image filled;
+  RC_TRY(rc_problem_of_synthesis(&job->context, &views, plane, &problem));
+  RC_TRY(run_method(job, &problem, &filled));
+  RC_TRY(rc_stage(&job->context, "write", .97, 1));
+  write_synthesis(&filled, &problem.flags, result);
+  return RECEDE_OK;
+}
+
+static recede_status synthesize_as_paper(recede_job *job, const recede_plane *plane,
+                                         const recede_view *result) {
+  rc_context *context = &job->context;
+  rc_views views = {&job->image, NULL, job->source.data ? &job->source : NULL};
+  rc_image exemplar, made;
+  rc_mask flags;
+  RC_TRY(rc_shrink(context, &views, 1, &exemplar, &flags));
+  RC_TRY(rc_image_new(context, result->width, result->height, exemplar.channels, &made));
+  RC_TRY(rc_synthesize_paper(context, &exemplar, &flags, plane, &job->params, &made));
+  RC_TRY(rc_stage(context, "write", .97, 1));
+  context->report.filled_pixels = (uint64_t)made.width * (uint64_t)made.height;
+  write_synthesis(&made, NULL, result);
+  return RECEDE_OK;
+}
+
+/* Method plane: the orientation is the result's, the exemplar its middle, seen by the same camera.
+ * The paper: it is the exemplar's, and its scale map is stretched to the result (its section 4). */
+static recede_status synthesize(recede_job *job, const recede_view *result) {
+  rc_context *context = &job->context;
+  recede_orientation *orientation = &context->report.orientation;
+  bool in_plane = job->params.method == RECEDE_METHOD_PLANE;
+  const recede_view *framed = in_plane ? result : &job->image;
+  RC_TRY(rc_stage(context, "prepare", 0, .01));
+  RC_TRY(check_result(job, result, false));
+  RC_TRY(plan_synthesis(job, result->width, result->height));
+  job->mask.data = NULL;
+  RC_TRY(fall_back(job,
+                   resolve_plane(job, framed->width, framed->height, (framed->width - 1) / 2.,
+                                 (framed->height - 1) / 2., orientation),
+                   orientation));
+  if (in_plane) orientation->plane.width = result->width, orientation->plane.height = result->height;
+  describe(orientation);
+  RC_TRY(rc_stage(context, "prepare", .03, .05));
+  RC_TRY(in_plane ? synthesize_in_plane(job, &orientation->plane, result)
+                  : synthesize_as_paper(job, &orientation->plane, result));
+  context->report.output_hash = rc_view_hash(result);
+  return RECEDE_OK;
+}
+
+recede_status recede_job_synthesize(recede_job *job, const recede_view *result) {
+  recede_status status = begin(job);
+  return end(job, status == RECEDE_OK ? synthesize(job, result) : status);
+}

@@ -1,0 +1,44 @@
+/* What every method is asked: these pixels, these to fill, those to copy from, this plane. */
+#ifndef RECEDE_SYNTHESIS_PROBLEM_H
+#define RECEDE_SYNTHESIS_PROBLEM_H
+
+#include "image/image.h"
+
+/* w(x, y) = a x + b y + c in the problem's own coordinates: 1 at the target's centroid, proportional
+ * to 1 / depth, 0 on the horizon. All that matters for copying within the plane. */
+typedef struct rc_line {
+  double a, b, c;
+} rc_line;
+static inline double rc_w(const rc_line *line, double x, double y) {
+  return line->a * x + line->b * y + line->c;
+}
+
+typedef struct rc_problem {
+  rc_image image; /* the part of the picture that matters; 0 where not KNOWN */
+  rc_mask flags;  /* RC_TARGET, RC_KNOWN, RC_SOURCE */
+  rc_box target;  /* bounding box of the TARGET pixels */
+  rc_line line;
+  recede_plane plane; /* of the whole picture */
+  int origin_x, origin_y; /* of image in the whole picture */
+} rc_problem;
+
+/* Each fills the TARGET pixels of *filled (allocated by the caller, a copy of problem->image) and
+ * leaves the others; progress runs over 0.05..0.97 of the run. */
+recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
+                            const recede_params *params, rc_image *filled);
+/* Methods paper and kwatra: params->method says which. */
+recede_status rc_fill_paper(rc_context *context, const rc_problem *problem,
+                            const recede_params *params, rc_image *filled);
+/* The paper's section 4: exemplar (flags: RC_SOURCE where usable) to result's size; plane is the
+ * exemplar's. result is allocated by the caller. */
+recede_status rc_synthesize_paper(rc_context *context, const rc_image *exemplar,
+                                  const rc_mask *flags, const recede_plane *plane,
+                                  const recede_params *params, rc_image *result);
+
+/* Upper bounds of memory beyond the problem itself, bytes, for pixels of which target are filled. */
+uint64_t rc_plane_bytes(uint64_t pixels, uint64_t target, int channels,
+                        const recede_params *params);
+uint64_t rc_paper_bytes(uint64_t exemplar_pixels, uint64_t target, int channels,
+                        const recede_params *params);
+
+#endif

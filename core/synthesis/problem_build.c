@@ -1,0 +1,221 @@
+#include "synthesis/problem_build.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "image/view.h"
+
+/* A patch needs about this much around the hole whatever its size. */
+#define LEAST_MARGIN_PX 48
+/* Margin in hole sizes: the nearest texture of the same scale lies beside the hole. */
+#define MARGIN_OF_HOLE 2.0
+/* Target pixels with less than this part of the nearest target pixel's w are not on the plane: a
+ * texel there is a hundredth of a px per px of the nearest. */
+#define LEAST_W_OF_TARGET .01
+/* Source with less than this part of w at the hole is below any use (mip level 5). */
+#define LEAST_W_OF_SOURCE .03
+/* The mask's ring: edges of what was removed bleed this far. */
+#define UNTRUSTED_RING_PX 2
+
+recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
+                                  rc_target_summary *summary) {
+  double sum_x = 0, sum_y = 0;
+  float *row;
+  *summary = (rc_target_summary){{mask->width, mask->height, 0, 0}, 0, 0, 0};
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, mask->width, &row));
+  for (int y = 0; y < mask->height; y++) {
+    rc_view_read(mask, 0, y, mask->width, row);
+    for (int x = 0; x < mask->width; x++) {
+      if (!(row[x] > 0)) continue;
+      rc_box *box = &summary->box;
+      if (x < box->x0) box->x0 = x;
+      if (x >= box->x1) box->x1 = x + 1;
+      if (y < box->y0) box->y0 = y;
+      box->y1 = y + 1;
+      summary->pixels++;
+      sum_x += x;
+      sum_y += y;
+    }
+  }
+  rc_release(context, mark);
+  if (!summary->pixels)
+    return rc_fail(context, RECEDE_EMPTY_TARGET,
+                   "The mask selects nothing: all its pixels are black. Paint what is to be filled "
+                   "white.");
+  summary->x = sum_x / (double)summary->pixels;
+  summary->y = sum_y / (double)summary->pixels;
+  return RECEDE_OK;
+}
+
+rc_box rc_problem_box(const rc_target_summary *summary, int width, int height) {
+  rc_box box = summary->box;
+  int longer = box.x1 - box.x0 > box.y1 - box.y0 ? box.x1 - box.x0 : box.y1 - box.y0;
+  int margin = (int)fmin(MARGIN_OF_HOLE * longer + LEAST_MARGIN_PX, 1 << 20);
+  box.x0 = box.x0 - margin < 0 ? 0 : box.x0 - margin;
+  box.y0 = box.y0 - margin < 0 ? 0 : box.y0 - margin;
+  box.x1 = box.x1 + margin > width ? width : box.x1 + margin;
+  box.y1 = box.y1 + margin > height ? height : box.y1 + margin;
+  return box;
+}
+
+/* The plane's w in the problem's coordinates, in units of its value at (x, y) of the whole. */
+static rc_line line_of(const recede_plane *plane, int origin_x, int origin_y, double x, double y) {
+  double unit = recede_plane_w(plane, x, y), f = plane->focal_px;
+  return (rc_line){plane->normal[0] / f / unit, plane->normal[1] / f / unit,
+                   recede_plane_w(plane, origin_x, origin_y) / unit};
+}
+
+static recede_status read_pixels(rc_context *context, const rc_views *views, rc_problem *problem) {
+  int width = problem->image.width, channels = views->image->channels, colours = channels < 3 ? 1 : 3;
+  float *values, *scratch;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, width * channels, &values));
+  RC_TRY(RC_NEW(context, width, &scratch));
+  for (int y = 0; y < problem->image.height; y++) {
+    uint8_t *flags = rc_flag(&problem->flags, 0, y);
+    rc_view_read(views->image, problem->origin_x, problem->origin_y + y, width, values);
+    context->report.nonfinite_pixels += (uint64_t)rc_classify_row(
+        views, problem->origin_x, problem->origin_y + y, width, values, scratch, flags);
+    for (int x = 0; x < width; x++)
+      if (flags[x] & RC_KNOWN)
+        memcpy(rc_pixel(&problem->image, x, y), values + (size_t)x * (size_t)channels,
+               (size_t)colours * sizeof(float));
+    RC_TRY(rc_poll(context));
+  }
+  rc_release(context, mark);
+  return RECEDE_OK;
+}
+
+/* w where the target comes nearest, and its centroid on the plane. */
+static double nearest_w(const rc_problem *problem, double *x, double *y) {
+  double nearest = 0, sum_x = 0, sum_y = 0, count = 0;
+  for (int py = 0; py < problem->flags.height; py++)
+    for (int px = 0; px < problem->flags.width; px++) {
+      double w = recede_plane_w(&problem->plane, problem->origin_x + px, problem->origin_y + py);
+      if (!(*rc_flag(&problem->flags, px, py) & RC_TARGET) || w <= 0) continue;
+      nearest = fmax(nearest, w);
+      sum_x += px, sum_y += py, count++;
+    }
+  if (count > 0) *x = problem->origin_x + sum_x / count, *y = problem->origin_y + sum_y / count;
+  return nearest;
+}
+
+/* Takes target pixels beyond the horizon out, and source that is too far away; sets target box. */
+static void apply_horizon(rc_context *context, rc_problem *problem, double least_target_w) {
+  rc_box *box = &problem->target;
+  *box = (rc_box){problem->flags.width, problem->flags.height, 0, 0};
+  for (int y = 0; y < problem->flags.height; y++)
+    for (int x = 0; x < problem->flags.width; x++) {
+      uint8_t *flag = rc_flag(&problem->flags, x, y);
+      double w = rc_w(&problem->line, x, y);
+      if (w < LEAST_W_OF_SOURCE) *flag &= (uint8_t)~RC_SOURCE;
+      if (!(*flag & RC_TARGET)) continue;
+      if (w < least_target_w) {
+        *flag = 0;
+        context->report.refused_pixels++;
+        continue;
+      }
+      context->report.filled_pixels++;
+      if (x < box->x0) box->x0 = x;
+      if (x >= box->x1) box->x1 = x + 1;
+      if (y < box->y0) box->y0 = y;
+      box->y1 = y + 1;
+    }
+}
+
+static void distrust_ring(rc_mask *flags) {
+  for (int y = 0; y < flags->height; y++)
+    for (int x = 0; x < flags->width; x++) {
+      if (!(*rc_flag(flags, x, y) & RC_TARGET)) continue;
+      for (int dy = -UNTRUSTED_RING_PX; dy <= UNTRUSTED_RING_PX; dy++)
+        for (int dx = -UNTRUSTED_RING_PX; dx <= UNTRUSTED_RING_PX; dx++)
+          if (rc_inside(flags->width, flags->height, x + dx, y + dy))
+            *rc_flag(flags, x + dx, y + dy) &= (uint8_t)~RC_SOURCE;
+    }
+}
+
+static recede_status check_source(rc_context *context, const rc_problem *problem) {
+  size_t pixels = (size_t)problem->flags.width * (size_t)problem->flags.height, sources = 0;
+  for (size_t i = 0; i < pixels; i++) sources += problem->flags.data[i] & RC_SOURCE ? 1 : 0;
+  if (sources) return RECEDE_OK;
+  return rc_fail(context, RECEDE_EMPTY_SOURCE,
+                 "Nothing is left to copy from: no pixel outside the mask is opaque, finite, on the "
+                 "plane and inside the source region. Mask less or widen the source region.");
+}
+
+recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
+                                 const recede_plane *plane, const rc_target_summary *summary,
+                                 rc_problem *problem) {
+  rc_box box = rc_problem_box(summary, views->image->width, views->image->height);
+  double x = summary->x, y = summary->y;
+  *problem = (rc_problem){.plane = *plane, .origin_x = box.x0, .origin_y = box.y0};
+  int colours = views->image->channels < 3 ? 1 : 3;
+  RC_TRY(rc_image_new(context, box.x1 - box.x0, box.y1 - box.y0, colours, &problem->image));
+  RC_TRY(rc_mask_new(context, box.x1 - box.x0, box.y1 - box.y0, &problem->flags));
+  RC_TRY(read_pixels(context, views, problem));
+  double nearest = nearest_w(problem, &x, &y);
+  if (!(nearest > 0))
+    return rc_fail(context, RECEDE_EMPTY_TARGET,
+                   "All %llu px of the mask lie beyond the horizon: there is no plane to fill. Move "
+                   "the horizon or fill with the frontal orientation.",
+                   (unsigned long long)summary->pixels);
+  problem->line = line_of(plane, box.x0, box.y0, x, y);
+  apply_horizon(context, problem, LEAST_W_OF_TARGET * nearest / recede_plane_w(plane, x, y));
+  distrust_ring(&problem->flags);
+  if (context->report.refused_pixels)
+    rc_warn(context, "%llu of %llu px of the mask lie beyond the horizon and were left as they were.",
+            (unsigned long long)context->report.refused_pixels,
+            (unsigned long long)summary->pixels);
+  return check_source(context, problem);
+}
+
+recede_status rc_problem_of_synthesis(rc_context *context, const rc_views *exemplar,
+                                      const recede_plane *plane, rc_problem *problem) {
+  int width = plane->width, height = plane->height, channels = exemplar->image->channels;
+  rc_views cropped = *exemplar;
+  recede_view middle = *exemplar->image, source;
+  int cut_x = middle.width > width ? (middle.width - width) / 2 : 0;
+  int cut_y = middle.height > height ? (middle.height - height) / 2 : 0;
+  middle.data = rc_view_pixel(exemplar->image, cut_x, cut_y);
+  middle.width = middle.width > width ? width : middle.width;
+  middle.height = middle.height > height ? height : middle.height;
+  cropped.image = &middle;
+  if (exemplar->source) {
+    source = *exemplar->source;
+    source.data = rc_view_pixel(exemplar->source, cut_x, cut_y);
+    cropped.source = &source;
+  }
+  rc_problem part = {.origin_x = 0, .origin_y = 0};
+  int colours = channels < 3 ? 1 : 3, x0 = (width - middle.width) / 2,
+      y0 = (height - middle.height) / 2;
+  *problem = (rc_problem){.plane = *plane};
+  RC_TRY(rc_image_new(context, width, height, colours, &problem->image));
+  RC_TRY(rc_mask_new(context, width, height, &problem->flags));
+  rc_block *mark = rc_mark(context);
+  RC_TRY(rc_image_new(context, middle.width, middle.height, colours, &part.image));
+  RC_TRY(rc_mask_new(context, middle.width, middle.height, &part.flags));
+  RC_TRY(read_pixels(context, &cropped, &part));
+  memset(problem->flags.data, RC_TARGET, (size_t)width * (size_t)height);
+  for (int y = 0; y < middle.height; y++) {
+    memcpy(rc_pixel(&problem->image, x0, y0 + y), rc_pixel(&part.image, 0, y),
+           (size_t)middle.width * (size_t)colours * sizeof(float));
+    for (int x = 0; x < middle.width; x++) {
+      uint8_t flag = *rc_flag(&part.flags, x, y);
+      *rc_flag(&problem->flags, x0 + x, y0 + y) = flag & RC_KNOWN ? flag : RC_TARGET;
+    }
+  }
+  rc_release(context, mark);
+  double unused_x = 0, unused_y = 0, nearest = nearest_w(problem, &unused_x, &unused_y);
+  double x = (width - 1) / 2., y = (height - 1) / 2.;
+  if (recede_plane_w(plane, x, y) <= 0)
+    return rc_fail(context, RECEDE_NO_PLANE,
+                   "The exemplar's centre lies beyond the horizon: give a slant below 90 degrees.");
+  problem->line = line_of(plane, 0, 0, x, y);
+  apply_horizon(context, problem, LEAST_W_OF_TARGET * nearest / recede_plane_w(plane, x, y));
+  if (context->report.refused_pixels)
+    rc_warn(context, "%llu px of the result lie beyond the horizon and are left empty.",
+            (unsigned long long)context->report.refused_pixels);
+  return check_source(context, problem);
+}

@@ -1,0 +1,27 @@
+/* Makes the problem of a fill or a synthesis from the caller's views. */
+#ifndef RECEDE_SYNTHESIS_PROBLEM_BUILD_H
+#define RECEDE_SYNTHESIS_PROBLEM_BUILD_H
+
+#include "image/shrink.h"
+#include "synthesis/problem.h"
+
+typedef struct rc_target_summary {
+  rc_box box;      /* of the mask's pixels above 0 */
+  uint64_t pixels;
+  double x, y; /* centroid */
+} rc_target_summary;
+
+/* Scans the mask once. RECEDE_EMPTY_TARGET when it selects nothing. */
+recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
+                                  rc_target_summary *summary);
+/* The part of the picture that a fill looks at: the target's box with its surroundings. */
+rc_box rc_problem_box(const rc_target_summary *summary, int width, int height);
+/* Target pixels on or beyond the horizon are refused: counted in the report, left as they were. */
+recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
+                                 const recede_plane *plane, const rc_target_summary *summary,
+                                 rc_problem *problem);
+/* A canvas of plane->width x plane->height, the exemplar in its middle, the rest to be filled. */
+recede_status rc_problem_of_synthesis(rc_context *context, const rc_views *exemplar,
+                                      const recede_plane *plane, rc_problem *problem);
+
+#endif
