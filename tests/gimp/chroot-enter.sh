@@ -1,0 +1,40 @@
+#!/bin/bash
+# chroot-enter.sh FOLDER UID:GID PROJECT WORKDIR COMMAND...
+# Called by chroot.sh as root in a mount namespace of its own: mounts, then runs COMMAND in FOLDER.
+set -euo pipefail
+
+folder=$1 owner=$2 project=$3 workdir=$4
+shift 4
+
+bind() {
+  mkdir -p "$folder$2"
+  mount --bind "$1" "$folder$2"
+}
+
+mount --make-rprivate /
+mount -t proc proc "$folder/proc"
+mount --rbind /dev "$folder/dev"
+mount -t tmpfs -o mode=1777 tmpfs "$folder/tmp"
+mount -t tmpfs tmpfs "$folder/run"
+# apt inside needs to find the mirror.
+for file in /etc/resolv.conf /etc/hosts; do
+  [ -e "$file" ] && cp -L "$file" "$folder$file"
+done
+if [ "$workdir" != / ]; then
+  bind "$project" "$project"
+  shared=$(dirname "$project")/shared
+  [ -d "$shared" ] && bind "$(readlink -f "$shared")" "$shared"
+fi
+mkdir -p "$folder/tmp/home" "$folder/tmp/run"
+chown "$owner" "$folder/tmp/home" "$folder/tmp/run"
+chmod 700 "$folder/tmp/run"
+
+settings=()
+for name in CI TERM LANG LANGUAGE LC_ALL MESON_TESTTHREADS SOURCE_DATE_EPOCH \
+  http_proxy https_proxy no_proxy ${!RECEDE_*}; do
+  [ -n "${!name-}" ] && settings+=("$name=${!name}")
+done
+# shellcheck disable=SC2016 # expanded inside
+chroot --userspec="$owner" "$folder" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp/home \
+  XDG_RUNTIME_DIR=/tmp/run DEBIAN_FRONTEND=noninteractive LANG=C.UTF-8 "${settings[@]}" \
+  sh -c 'cd "$1" && shift && exec "$@"' sh "$workdir" "$@"

@@ -1,0 +1,103 @@
+#!/bin/bash
+# `./dev test`: builds and runs the tests. A line for every failing one with the path of its log;
+# the last line is `N passed, N failed`, counting single cases. Fails when one did, or none ran.
+set -uo pipefail
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
+project=$PWD # used by common.sh too
+# shellcheck source=tests/lib/common.sh
+. tests/lib/common.sh
+
+logs=$project/build/test-logs # one folder for the whole run, emptied at its start
+names=()
+fast=0 sanitize=0 ci=0
+
+for argument; do
+  case $argument in
+    --fast) fast=1 ;;
+    --sanitize) sanitize=1 ;;
+    --ci) ci=1 ;;
+    -*)
+      echo "test: no such option: $argument" >&2
+      exit 2
+      ;;
+    *) names+=("$argument") ;;
+  esac
+done
+
+# step NAME COMMAND...: something that must succeed for tests to be run; a failure counts as one.
+step() {
+  local name=$1
+  shift
+  echo "== $name"
+  if ! "$@" >"$logs/$name.log" 2>&1 </dev/null; then
+    tail -n 30 "$logs/$name.log"
+    echo "$name: $* failed" >>"$logs/failed-steps"
+    return 1
+  fi
+}
+
+# meson_test LABEL PREFIX FOLDER ARGUMENT...: PREFIX is a command to run meson with, or nothing.
+meson_test() {
+  local label=$1 folder=$3 prefix
+  read -ra prefix <<<"$2"
+  shift 3
+  echo "== $label"
+  rm -f "$folder/meson-logs/testlog".*
+  "${prefix[@]}" meson test -C "$folder" --no-rebuild --print-errorlogs "$@" \
+    >"$logs/$label.out" 2>&1 </dev/null
+  grep -E '^ *[0-9]+/[0-9]+ ' "$logs/$label.out"
+  # Absent when no test matched: then nothing is counted.
+  if [ -e "$folder/meson-logs/testlog.json" ]; then
+    cp "$folder/meson-logs/testlog.json" "$logs/$label.testlog.json"
+  fi
+}
+
+native() {
+  step configure configure build -Dwerror=true || return
+  step compile ninja -C build || return
+  if [ ${#names[@]} -gt 0 ]; then
+    meson_test named "" build "${names[@]}"
+    return
+  fi
+  meson_test fast "" build --suite fast
+  if [ $fast = 0 ]; then
+    meson_test full "" build --no-suite fast --timeout-multiplier 2
+  fi
+}
+
+sanitized() {
+  step configure-sanitize configure build-sanitize -Db_sanitize=address,undefined \
+    -Db_lundef=false -Dbuildtype=debugoptimized -Db_ndebug=false -Dgimp2=disabled -Dgimp3=disabled || return
+  step compile-sanitize ninja -C build-sanitize || return
+  export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
+  export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+  export LSAN_OPTIONS=suppressions=$project/tests/house/lsan.supp:print_suppressions=0
+  local selection=(--no-suite house --no-suite quality)
+  [ $fast = 1 ] && selection=(--suite fast)
+  [ ${#names[@]} -gt 0 ] && selection=("${names[@]}")
+  meson_test sanitize "" build-sanitize --timeout-multiplier 6 "${selection[@]}"
+}
+
+gimp3() {
+  local inside=tests/gimp/chroot.sh
+  step chroot-gimp3 $inside make || return
+  step configure-gimp3 $inside run bash -c '
+    . tests/lib/common.sh && configure build-gimp3 -Dgimp2=disabled -Dgimp3=enabled' || return
+  step compile-gimp3 $inside run ninja -C build-gimp3 || return
+  meson_test gimp3 "$inside run" build-gimp3 --suite gimp3 --timeout-multiplier 2
+}
+
+rm -rf "$logs"
+mkdir -p "$logs"
+groups=(build)
+[ $fast = 1 ] || groups+=(plugin test)
+step packages install_packages "${groups[@]}"
+if [ $sanitize = 1 ]; then
+  sanitized
+else
+  native
+  if [ $fast = 0 ] && [ ${#names[@]} = 0 ] && [ -e plugin/gimp3 ]; then gimp3; fi
+  if [ $ci = 1 ]; then sanitized; fi
+fi
+python3 tests/lib/summary.py "$logs"
