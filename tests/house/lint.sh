@@ -1,4 +1,5 @@
 #!/bin/bash
+# shellcheck disable=SC2317 # functions are called through check()
 # `./dev lint`: all that can be said about the sources without running them. Fails at the end when
 # anything was found, after having said everything.
 set -uo pipefail
