@@ -8,7 +8,7 @@ project=$PWD # used by common.sh too
 # shellcheck source=tests/lib/common.sh
 . tests/lib/common.sh
 
-logs=$project/build/test-logs # one folder for the whole run, emptied at its start
+logs=$project/out/test-logs # one folder for the whole run, emptied at its start
 names=()
 fast=0 sanitize=0 ci=0
 
