@@ -20,47 +20,22 @@ wanted_stamp() {
   package_list gimp3
 }
 
-# The mirror that this machine's own apt uses, whatever the format of its sources.
-mirror() {
-  local uri
-  uri=$(apt-get indextargets --format "\$(ORIGIN) \$(CODENAME) \$(REPO_URI)" \
-    'Created-By: Packages' | awk '$1 == "Debian" && $2 !~ /-/ { print $3; exit }')
-  if [ -z "$uri" ]; then
-    echo "chroot.sh: no Debian mirror in this machine's apt sources" >&2
-    return 1
-  fi
-  echo "$uri"
-}
-
 # inside FOLDER USER:GROUP COMMAND...: the mounts live in a namespace of their own.
 inside() {
   local folder=$1 owner=$2
   shift 2
   as_root unshare --mount --pid --fork --kill-child \
-    bash "$project/tests/gimp/chroot-enter.sh" "$folder" "$owner" "$project" "$PWD" "$@"
+    bash "$project/tests/lib/chroot-enter.sh" "$folder" "$owner" "$project" "$PWD" "$@"
 }
 
 make_root() {
   local new="$root.new"
   as_root rm -rf --one-file-system "$new"
   mkdir -p "$(dirname "$root")"
-  as_root debootstrap --variant=minbase --include=ca-certificates \
-    --keyring=/usr/share/keyrings/debian-archive-keyring.gpg "$suite" "$new" "$(mirror)"
-  # The machine's own proxy and validity settings, where it has any.
-  local conf
-  for conf in /etc/apt/apt.conf.d/99*; do
-    [ -e "$conf" ] && as_root cp "$conf" "$new/etc/apt/apt.conf.d/"
-  done
-  printf 'APT::Install-Recommends "false";\nAcquire::Languages "none";\n' |
-    as_root tee "$new/etc/apt/apt.conf.d/90recede" >/dev/null
-  printf '#!/bin/sh\nexit 101\n' | as_root tee "$new/usr/sbin/policy-rc.d" >/dev/null
-  as_root chmod 755 "$new/usr/sbin/policy-rc.d"
-  (
-    cd /
-    # shellcheck disable=SC2046 # one word a package
-    inside "$new" 0:0 apt-get install -y -q $(package_list gimp3)
-    inside "$new" 0:0 apt-get clean
-  )
+  make_debian "$suite" "$new"
+  # shellcheck disable=SC2046 # one word a package
+  inside "$new" 0:0 apt-get install -y -q $(package_list gimp3)
+  inside "$new" 0:0 apt-get clean
   wanted_stamp | as_root tee "$new/etc/recede-stamp" >/dev/null
   as_root rm -rf --one-file-system "$root"
   as_root mv "$new" "$root"
@@ -78,7 +53,8 @@ make_once() {
   flock 9
   up_to_date && return
   echo "chroot.sh: making $root (a few minutes, 2 GB)" >&2
-  make_root >"$root.log" 2>&1 9>&- || {
+  # Another process, for `set -e` is off in a condition.
+  "${BASH_SOURCE[0]}" make-locked >"$root.log" 2>&1 9>&- || {
     tail -n 20 "$root.log" >&2
     echo "chroot.sh: $root could not be made; the whole log is $root.log" >&2
     return 1
@@ -87,6 +63,7 @@ make_once() {
 
 case "${1:-}" in
   make) make_once ;;
+  make-locked) make_root ;; # called by make, which holds the lock
   run)
     shift
     up_to_date || {

@@ -5,7 +5,7 @@ as_root() {
   if [ "$(id -u)" = 0 ]; then
     "$@"
   elif command -v sudo >/dev/null; then
-    sudo "$@"
+    sudo -E "$@"
   else
     echo "needs root: $*" >&2
     return 1
@@ -49,4 +49,32 @@ configure() {
     rm -rf "$1"
     meson setup "$@"
   fi
+}
+
+# The Debian mirror that this machine's own apt uses, whatever the format of its sources. Nothing when
+# there is none; debootstrap then has its own.
+mirror() {
+  apt-get indextargets --format "\$(ORIGIN) \$(CODENAME) \$(REPO_URI)" 'Created-By: Packages' |
+    awk '$1 == "Debian" && $2 !~ /-/ { print $3; exit }'
+}
+
+# make_debian SUITE FOLDER: a minimal Debian with this machine's mirror, unattended and lean.
+make_debian() {
+  local conf uri apt=$2/etc/apt/apt.conf.d
+  uri=$(mirror)
+  if [ -z "$uri" ]; then # apt's lists may have been cleaned away
+    as_root apt-get update -q
+    uri=$(mirror)
+  fi
+  as_root debootstrap --variant=minbase --include=ca-certificates \
+    --keyring=/usr/share/keyrings/debian-archive-keyring.gpg "$1" "$2" ${uri:+"$uri"}
+  # The machine's own proxy and validity settings, where it has any.
+  for conf in /etc/apt/apt.conf.d/99*; do
+    [ -e "$conf" ] && as_root cp "$conf" "$apt/"
+  done
+  printf 'APT::Install-Recommends "false";\nAcquire::Languages "none";\n' |
+    as_root tee "$apt/90recede" >/dev/null
+  # No daemon starts inside.
+  printf '#!/bin/sh\nexit 101\n' | as_root tee "$2/usr/sbin/policy-rc.d" >/dev/null
+  as_root chmod 755 "$2/usr/sbin/policy-rc.d"
 }

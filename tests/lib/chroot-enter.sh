@@ -1,6 +1,7 @@
 #!/bin/bash
 # chroot-enter.sh FOLDER UID:GID PROJECT WORKDIR COMMAND...
-# Called by chroot.sh as root in a mount namespace of its own: mounts, then runs COMMAND in FOLDER.
+# Called as root in a mount namespace of its own: mounts, then runs COMMAND in FOLDER. PROJECT, and
+# its neighbour ../shared, have the same path inside; "-" for none.
 set -euo pipefail
 
 folder=$1 owner=$2 project=$3 workdir=$4
@@ -20,7 +21,7 @@ mount -t tmpfs tmpfs "$folder/run"
 for file in /etc/resolv.conf /etc/hosts; do
   [ -e "$file" ] && cp -L "$file" "$folder$file"
 done
-if [ "$workdir" != / ]; then
+if [ "$project" != - ]; then
   bind "$project" "$project"
   shared=$(dirname "$project")/shared
   [ -d "$shared" ] && bind "$(readlink -f "$shared")" "$shared"
@@ -30,7 +31,7 @@ chown "$owner" "$folder/tmp/home" "$folder/tmp/run"
 chmod 700 "$folder/tmp/run"
 
 settings=()
-for name in CI TERM LANG LANGUAGE LC_ALL MESON_TESTTHREADS SOURCE_DATE_EPOCH \
+for name in CI TERM MESON_TESTTHREADS SOURCE_DATE_EPOCH \
   http_proxy https_proxy no_proxy ${!RECEDE_*}; do
   [ -n "${!name-}" ] && settings+=("$name=${!name}")
 done
