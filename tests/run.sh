@@ -68,7 +68,8 @@ native() {
 
 sanitized() {
   step configure-sanitize configure build-sanitize -Db_sanitize=address,undefined \
-    -Db_lundef=false -Dbuildtype=debugoptimized -Db_ndebug=false -Dgimp2=disabled -Dgimp3=disabled || return
+    -Db_lundef=false -Dbuildtype=debugoptimized -Db_ndebug=false \
+    -Dgimp2=disabled -Dgimp3=disabled || return
   step compile-sanitize ninja -C build-sanitize || return
   export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1

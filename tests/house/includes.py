@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
-"""The direction of includes, as TAP: base <- image <- plane <- synthesis <- recede.c <- {cli, plugin};
-kernels stand on base alone; the command and the plug-in see only recede.h. Usage: includes.py PROJECT
+"""The direction of includes, as TAP. Usage: includes.py PROJECT
+
+base <- image <- plane <- synthesis <- recede.c <- {cli, plugin}; kernels stand on base alone; the
+command and the plug-in see only recede.h.
 """
 import re
 import sys

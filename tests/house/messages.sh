@@ -13,7 +13,7 @@ verdict() { # STATUS NAME; what it saw comes on stdin
   sed 's/^/# /'
 }
 
-grep -rlE '\b(N?_|C_|ngettext) ?\("' --include='*.c' --include='*.h' core cli plugin |
+grep -rlE '\b(N?_|C_|ngettext) ?\("' --include='*.c' --include='*.h' core cli plugin 2>/dev/null |
   sort >"$work/with-messages"
 grep -vE '^(#|$)' po/POTFILES | sort >"$work/listed"
 comm -23 "$work/with-messages" "$work/listed" >"$work/unlisted"

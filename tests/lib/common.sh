@@ -51,8 +51,8 @@ configure() {
   fi
 }
 
-# The Debian mirror that this machine's own apt uses, whatever the format of its sources. Nothing when
-# there is none; debootstrap then has its own.
+# The Debian mirror that this machine's own apt uses, whatever the format of its sources. Nothing
+# when there is none; debootstrap then has its own.
 mirror() {
   apt-get indextargets --format "\$(ORIGIN) \$(CODENAME) \$(REPO_URI)" 'Created-By: Packages' |
     awk '$1 == "Debian" && $2 !~ /-/ { print $3; exit }'
