@@ -105,4 +105,4 @@ else
   if [ $fast = 0 ] && [ ${#names[@]} = 0 ] && [ -e plugin/gimp3 ]; then gimp3; fi
   if [ $ci = 1 ]; then sanitized; fi
 fi
-python3 tests/lib/summary.py "$logs"
+/usr/bin/python3 tests/lib/summary.py "$logs"

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The direction of includes, as TAP. Usage: includes.py PROJECT
 
 base <- image <- plane <- synthesis <- recede.c <- {cli, plugin}; kernels stand on base alone; the

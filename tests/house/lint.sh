@@ -58,7 +58,7 @@ check "cppcheck" static_checks
 check "shellcheck" shell_checks
 check "at most 400 lines a file" lengths
 check "at most 100 columns" widths
-check "direction of includes" tap python3 tests/house/includes.py .
+check "direction of includes" tap /usr/bin/python3 tests/house/includes.py .
 check "recede.h alone" tap tests/house/header.sh "$PWD" cc c++
 check "messages" tap tests/house/messages.sh "$PWD"
 exit $found

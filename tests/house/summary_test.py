@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The counting of `./dev test` itself, as TAP: a run that went wrong must never look right."""
 import json
 import subprocess

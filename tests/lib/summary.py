@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Counts the test cases of a run: summary.py FOLDER
 
 FOLDER holds LABEL.testlog.json files as `meson test` writes them, and failed-steps, a line for each
