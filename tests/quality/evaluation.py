@@ -1,0 +1,210 @@
+"""The evaluation data: where it is, its cases, and scores by its metrics.py.
+
+The data lies beside the checkout in ../shared/evaluate, or where RECEDE_EVALUATE says. When its
+cases are not made there yet, it is copied into the cache and they are made in the copy. Truths'
+raw numbers and scores are cached by the bytes they depend on, so no result is ever measured twice.
+"""
+import hashlib
+import importlib.util
+import json
+import os
+import pickle
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+PROJECT = Path(__file__).resolve().parents[2]
+CACHE = Path(os.environ.get('XDG_CACHE_HOME') or Path.home() / '.cache') / 'recede' / 'evaluate'
+
+
+@dataclass
+class Case:
+    """A picture with a hole whose truth is known."""
+    name: str
+    folder: Path
+    slant: float | None  # degrees; None for a photo
+    line: np.ndarray     # w = a x + b y + c, positive on the plane
+    options: list = field(default_factory=list)  # the orientation, as recede's options
+    source: list = field(default_factory=list)   # --source, for photos
+
+    def image(self, name, flags=cv2.IMREAD_COLOR):
+        picture = cv2.imread(str(self.folder / f'{name}.png'), flags)
+        if picture is None:
+            raise SystemExit(f'{self.folder / name}.png: cannot be read')
+        return picture
+
+    @property
+    def mask(self):
+        return self.image('mask', cv2.IMREAD_GRAYSCALE)
+
+    @property
+    def is_photo(self):
+        return self.slant is None
+
+    def short(self):
+        return self.name if self.is_photo else self.name[:3]
+
+
+def digest(*parts):
+    total = hashlib.sha256()
+    for part in parts:
+        total.update(part.read_bytes() if isinstance(part, Path) else str(part).encode())
+    return total.hexdigest()[:20]
+
+
+def cached(kind, key, make):
+    """The value stored under the key, made and stored when there is none."""
+    path = CACHE / kind / f'{key}.pickle'
+    if path.exists():
+        try:
+            return pickle.loads(path.read_bytes())
+        except (EOFError, pickle.UnpicklingError):  # written half
+            pass
+    value = make()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_suffix(f'.{os.getpid()}')
+    temporary.write_bytes(pickle.dumps(value))
+    temporary.replace(path)
+    return value
+
+
+def data_folder():
+    """The folder of the evaluation data, None where there is none."""
+    named = os.environ.get('RECEDE_EVALUATE')
+    folder = Path(named) if named else PROJECT.parent / 'shared' / 'evaluate'
+    if (folder / 'metrics.py').exists():
+        return folder.resolve()
+    if named:
+        raise SystemExit(f'RECEDE_EVALUATE={named}: holds no metrics.py')
+    return None
+
+
+def prepared_folder(count=30):
+    """The data with its cases made: in place where they are, else in a copy in the cache."""
+    folder = data_folder()
+    if folder is None:
+        return None
+    if (folder / 'cases').is_dir() and (folder / 'photo_cases').is_dir():
+        return folder
+    ready = CACHE / 'data' / digest(count, *sorted(folder.glob('*.py')))
+    if not ready.exists():
+        print(f'making {count} cases in {ready}', file=sys.stderr)
+        make_cases(folder, ready, count)
+    return ready
+
+
+def make_cases(folder, ready, count):
+    """Copies the data and makes its cases there; the name `ready` appears when all is done."""
+    ready.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=ready.parent) as temporary:
+        copy = Path(temporary) / 'evaluate'
+        # copyfile: the original may be read-only, its modes must not come along.
+        shutil.copytree(folder, copy, copy_function=shutil.copyfile)
+        for path in [copy, *copy.rglob('*')]:
+            path.chmod(0o755)
+        for command in (['make_cases.py', '-n', str(count)], ['make_photo_cases.py']):
+            subprocess.run([sys.executable, *command], cwd=copy, check=True,
+                           stdout=subprocess.DEVNULL)
+        if not ready.exists():  # somebody else may have been faster
+            copy.rename(ready)
+
+
+def synthetic_case(folder):
+    meta = json.loads((folder / 'meta.json').read_text())
+    angles = [f'--{option}={meta[key]}' for option, key in
+              (('slant', 'slant'), ('tilt', 'tilt'), ('fov', 'fov_deg'))]
+    line = np.linalg.inv(np.array(meta['H_texture_to_image'], float))[2]
+    centre = np.array([(meta['width'] - 1) / 2, (meta['height'] - 1) / 2, 1])
+    return Case(folder.name, folder, float(meta['slant']), line / (line @ centre), angles)
+
+
+def photo_case(folder):
+    geometry = json.loads((folder / 'geo.json').read_text())
+    case = Case(folder.name, folder, None, np.array(geometry['horizon'], float))
+    left, right = geometry['horizon_y_left_right']
+    height, width = case.mask.shape
+    case.options = (['--frontal'] if left is None else
+                    [f'--horizon=0,{left * height},{width},{right * height}'])
+    case.source = ['--source', str(folder / 'valid.png')]
+    return case
+
+
+def load_cases(wanted=None):
+    """Every case, or those whose name begins with one of the wanted words."""
+    root = prepared_folder()
+    if root is None:
+        raise SystemExit('the evaluation data is not there: put it into ../shared/evaluate, or '
+                         'name its folder in RECEDE_EVALUATE')
+    cases = [synthetic_case(path) for path in sorted((root / 'cases').iterdir())]
+    cases += [photo_case(path) for path in sorted((root / 'photo_cases').iterdir())]
+    if wanted:
+        cases = [case for case in cases if case.name.startswith(tuple(wanted))]
+        if not cases:
+            raise SystemExit(f'no case begins with {" or ".join(wanted)}')
+    return cases
+
+
+_metrics = {}
+
+
+def metrics_of(root):
+    """The data's metrics.py as a module."""
+    path = root / 'metrics.py'
+    if path not in _metrics:
+        spec = importlib.util.spec_from_file_location('metrics', path)
+        _metrics[path] = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(_metrics[path])
+        cv2.setNumThreads(1)  # metrics sets 2; we measure in processes of our own
+    return _metrics[path]
+
+
+class Judge:
+    """Scores results of one case; the truth is measured once."""
+
+    def __init__(self, case):
+        self.case = case
+        self.metrics = metrics_of(case.folder.parents[1])
+        mask = case.mask
+        hole = mask > 127
+        rows, columns = np.nonzero(hole)
+        line = case.line / (case.line @ np.array([columns.mean(), rows.mean(), 1]))
+        valid = case.image('valid', cv2.IMREAD_GRAYSCALE) if case.is_photo else None
+        self.geometry = self.metrics.Geo(hole.shape, line, valid)
+        self.hole = hole & self.geometry.ok
+        self.known = (cv2.dilate(mask, np.ones((5, 5))) <= 127) & self.geometry.ok
+        self.bands = self.metrics.bands(self.geometry, self.hole, self.known)
+        self.key = digest(case.folder / 'truth.png', case.folder / 'mask.png', line,
+                          case.folder.parents[1] / 'metrics.py')
+
+    def raw(self, picture):
+        picture = picture.astype(np.float32) / 255
+        return self.metrics.raw(picture, picture, self.hole, self.known, self.geometry,
+                                self.geometry, self.bands, True)
+
+    def measure(self, picture):
+        truth = cached('truth', self.key, lambda: self.raw(self.case.image('truth')))
+        terms = self.metrics.penalties(self.raw(picture), truth)
+        return {'score': self.metrics.score(terms), 'terms': terms, 'losses': self.losses(terms)}
+
+    def losses(self, terms):
+        """What each term takes from the score, in its weighted sum; 0 within its unit."""
+        return {term: weight * min(max(terms[term] / self.metrics.UNITS[term] - 1, 0), 4)
+                for term, weight in self.metrics.WEIGHT.items() if term in terms}
+
+    def score(self, path):
+        """Of a file: what measure() gives, and 'changed_outside', pixels."""
+        return cached('score', digest(self.key, path, 2), lambda: self.score_now(path))
+
+    def score_now(self, path):
+        picture = cv2.imread(str(path), cv2.IMREAD_COLOR)
+        original = self.case.image('input')
+        if picture is None or picture.shape != original.shape:
+            raise ValueError(f'{path}: not a picture of the size of its case')
+        outside = (picture != original).any(axis=2) & (self.case.mask == 0)
+        return {**self.measure(picture), 'changed_outside': int(outside.sum())}

@@ -1,0 +1,99 @@
+"""Tables of scores."""
+import statistics
+
+from methods import ORACLE, PEERS
+
+STEEP_DEG = 40.0  # from here on a fill without perspective fails
+TERMS = ['regular', 'sharpness', 'seam']
+# Rivals for the win rate; --frontal is our own engine without perspective.
+RIVALS = [*PEERS, 'frontal']
+
+
+def table(header, rows):
+    """A markdown table, aligned for a terminal too."""
+    rows = [[str(cell) for cell in row] for row in [header, *rows]]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(header))]
+    lines = ['| ' + ' | '.join([row[0].ljust(widths[0])] +
+                               [cell.rjust(width) for cell, width in zip(row[1:], widths[1:])]) +
+             ' |' for row in rows]
+    rule = '|' + '|'.join(['-' * (widths[0] + 2)] + ['-' * (width + 1) + ':'
+                                                     for width in widths[1:]]) + '|'
+    return '\n'.join([lines[0], rule, *lines[1:]]) + '\n'
+
+
+def number(value, digits=1):
+    return '' if value is None else f'{value:.{digits}f}'
+
+
+def mean(values):
+    values = list(values)
+    return statistics.fmean(values) if values else None
+
+
+def median_term(found, term):
+    values = [entry['terms'][term] for entry in found if term in entry['terms']]
+    return statistics.median(values) if values else None
+
+
+def wins(cases, scores, method):
+    """Cases won against the best rival, and cases compared; rivals are those measured."""
+    won = compared = 0
+    for case in cases:
+        found = scores[case.name]
+        rivals = [found[name]['score'] for name in RIVALS if name in found and name != method]
+        if method in found and rivals:
+            compared += 1
+            won += found[method]['score'] > max(rivals)
+    return won, compared
+
+
+def figures(cases, scores, methods):
+    """{method: the summary's numbers}."""
+    rendered = [case for case in cases if not case.is_photo]
+    steep = [case for case in rendered if case.slant >= STEEP_DEG]
+    photos = [case for case in cases if case.is_photo]
+    out = {}
+    for method in methods:
+        def of(group):
+            return [scores[case.name][method] for case in group if method in scores[case.name]]
+        out[method] = {
+            'mean': mean(entry['score'] for entry in of(rendered)),
+            'mean_steep': mean(entry['score'] for entry in of(steep)),
+            'wins_steep': wins(steep, scores, method) if method != ORACLE else (0, 0),
+            **{term: median_term(of(rendered), term) for term in TERMS},
+            'photos': mean(entry['score'] for entry in of(photos)),
+            'wins_photos': wins(photos, scores, method) if method != ORACLE else (0, 0),
+            'cpu': mean(entry['cpu'] for entry in of(cases) if 'cpu' in entry),
+            'failed': sum('error' in entry for entry in of(cases)),
+            'changed_outside': sum(entry.get('changed_outside', 0) > 0 for entry in of(cases)),
+        }
+    return out
+
+
+def ratio(pair):
+    return f'{pair[0]}/{pair[1]}' if pair[1] else ''
+
+
+def summary(cases, scores, methods):
+    header = ['method', 'mean', f'>= {STEEP_DEG:.0f} deg', 'wins', *TERMS, 'photos', 'wins',
+              'CPU s', 'failed', 'outside']
+    rows = [[method, number(row['mean']), number(row['mean_steep']), ratio(row['wins_steep']),
+             *(number(row[term], 3) for term in TERMS), number(row['photos']),
+             ratio(row['wins_photos']), number(row['cpu'], 2), row['failed'],
+             row['changed_outside']]
+            for method, row in figures(cases, scores, methods).items()]
+    return table(header, rows)
+
+
+def per_case(cases, scores, methods):
+    """Scores of every method, and the terms of the first that cost it most."""
+    rows = []
+    for case in cases:
+        found = scores[case.name]
+        first = found.get(methods[0], {})
+        losses = sorted(first.get('losses', {}).items(), key=lambda item: -item[1])[:4]
+        note = first.get('error') or ' '.join(f'{term} {first["terms"][term]:.2f}'
+                                              for term, loss in losses if loss > 0)
+        rows.append([case.name, *(number(found[method]['score'], 0) if method in found else ''
+                                  for method in methods), note])
+    return table(['case', *methods, f'{methods[0]}: terms that cost most'], rows)
