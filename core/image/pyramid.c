@@ -1,0 +1,53 @@
+#include "image/pyramid.h"
+
+#include "base/parallel.h"
+
+typedef struct halving {
+  const rc_image *image;
+  const rc_mask *flags;
+  rc_image *half_image;
+  rc_mask *half_flags;
+} halving;
+
+static int clamp(int v, int count) { return v < 0 ? 0 : v >= count ? count - 1 : v; }
+
+static void average(const halving *h, int x, int y, float *out) {
+  static const float tap[4] = {1, 3, 3, 1};
+  float sum[3] = {0, 0, 0}, total = 0;
+  int channels = h->image->channels;
+  for (int j = 0; j < 4; j++)
+    for (int i = 0; i < 4; i++) {
+      int sx = clamp(2 * x - 1 + i, h->image->width), sy = clamp(2 * y - 1 + j, h->image->height);
+      if (!(*rc_flag(h->flags, sx, sy) & RC_KNOWN)) continue;
+      const float *pixel = rc_pixel(h->image, sx, sy);
+      float weight = tap[i] * tap[j];
+      for (int k = 0; k < channels; k++) sum[k] += weight * pixel[k];
+      total += weight;
+    }
+  for (int k = 0; k < channels; k++) out[k] = total > 0 ? sum[k] / total : 0;
+}
+
+static void half_row(void *user, int y, int thread) {
+  const halving *h = user;
+  (void)thread;
+  for (int x = 0; x < h->half_image->width; x++) {
+    uint8_t any = 0, all = 255;
+    for (int c = 0; c < 4; c++) {
+      uint8_t flag = *rc_flag(h->flags, clamp(2 * x + (c & 1), h->flags->width),
+                              clamp(2 * y + (c >> 1), h->flags->height));
+      any |= flag, all &= flag;
+    }
+    *rc_flag(h->half_flags, x, y) =
+        any & RC_TARGET ? RC_TARGET : (uint8_t)(all & (RC_KNOWN | RC_SOURCE));
+    average(h, x, y, rc_pixel(h->half_image, x, y));
+  }
+}
+
+recede_status rc_half(rc_context *context, const rc_image *image, const rc_mask *flags,
+                      rc_image *half_image, rc_mask *half_flags) {
+  int width = (image->width + 1) / 2, height = (image->height + 1) / 2;
+  RC_TRY(rc_image_new(context, width, height, image->channels, half_image));
+  RC_TRY(rc_mask_new(context, width, height, half_flags));
+  halving h = {image, flags, half_image, half_flags};
+  return rc_parallel(context, height, half_row, &h);
+}

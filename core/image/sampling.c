@@ -1,0 +1,57 @@
+#include "image/sampling.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double cubic(double v) {
+  v = fabs(v);
+  return v < 1 ? (4 - 6 * v * v + 3 * v * v * v) / 6 : v < 2 ? (2 - v) * (2 - v) * (2 - v) / 6 : 0;
+}
+
+/* The B-spline of the samples' coefficients; those are the samples filtered with the inverse of
+ * (1 4 1) / 6, whose taps fall off as z^|k|. */
+static double cardinal(double v) {
+  double z = sqrt(3.) - 2, sum = 0;
+  for (int k = -12; k <= 12; k++) sum += -6 * z / (1 - z * z) * pow(z, abs(k)) * cubic(v - k);
+  return sum;
+}
+
+void rc_sampler_init(rc_sampler *sampler, bool bilinear) {
+  sampler->bilinear = bilinear;
+  for (int s = 0; s < RC_SPLINE_STEPS; s++) {
+    double sum = 0, t = (double)s / RC_SPLINE_STEPS, taps[RC_SPLINE_TAPS];
+    for (int i = 0; i < RC_SPLINE_TAPS; i++) {
+      double v = t - (i - (RC_SPLINE_TAPS / 2 - 1));
+      taps[i] = bilinear ? fmax(1 - fabs(v), 0) : cardinal(v);
+      sum += taps[i];
+    }
+    for (int i = 0; i < RC_SPLINE_TAPS; i++) sampler->taps[s][i] = (float)(taps[i] / sum);
+  }
+}
+
+static int clamp(int v, int count) { return v < 0 ? 0 : v >= count ? count - 1 : v; }
+
+void rc_sample(const rc_sampler *sampler, const rc_image *image, float x, float y, float *value) {
+  int channels = image->channels, reach = RC_SPLINE_TAPS / 2 - 1;
+  int fixed_x = (int)floorf(x * RC_SPLINE_STEPS + .5f), fixed_y = (int)floorf(y * RC_SPLINE_STEPS + .5f);
+  int step_x = fixed_x & (RC_SPLINE_STEPS - 1), step_y = fixed_y & (RC_SPLINE_STEPS - 1);
+  int ix = (fixed_x - step_x) / RC_SPLINE_STEPS, iy = (fixed_y - step_y) / RC_SPLINE_STEPS;
+  if (!step_x && !step_y) {
+    memcpy(value, rc_pixel(image, clamp(ix, image->width), clamp(iy, image->height)),
+           (size_t)channels * sizeof *value);
+    return;
+  }
+  float sum[3] = {0, 0, 0};
+  for (int j = 0; j < RC_SPLINE_TAPS; j++) {
+    float row[3] = {0, 0, 0}, tap_y = sampler->taps[step_y][j];
+    int sy = clamp(iy + j - reach, image->height);
+    for (int i = 0; i < RC_SPLINE_TAPS; i++) {
+      const float *pixel = rc_pixel(image, clamp(ix + i - reach, image->width), sy);
+      float tap = sampler->taps[step_x][i];
+      for (int k = 0; k < channels; k++) row[k] += tap * pixel[k];
+    }
+    for (int k = 0; k < channels; k++) sum[k] += tap_y * row[k];
+  }
+  memcpy(value, sum, (size_t)channels * sizeof *value);
+}

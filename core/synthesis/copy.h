@@ -1,0 +1,106 @@
+/* A copy: where the texture at a target point is taken from.
+ *
+ * Flat: a displacement d IN THE PLANE. With X the position relative to the point where w = 1,
+ *   X' = (X + d w) / (1 - (l . d) w),   w(X') = w / (1 - (l . d) w),   w(X) = 1 + l . X
+ * so scale, flattening, shear and converging lines come right by themselves.
+ * Raised: an upright similarity X' = r X + t of things that stand up from the plane, r the ratio of
+ * scales in steps of 2^(1/8), so that neighbours can share it; r = 1 is a move by whole pixels. */
+#ifndef RECEDE_SYNTHESIS_COPY_H
+#define RECEDE_SYNTHESIS_COPY_H
+
+#include <math.h>
+#include <stdbool.h>
+
+#include "base/real.h"
+
+typedef struct rc_copy {
+  float a, b; /* flat: d; raised: t. px of its level */
+  float r;    /* flat: 0; raised: the scale */
+} rc_copy;
+
+/* The plane as a level sees it: w = 1 + lx X + ly Y, and which map applies. */
+typedef struct rc_chart {
+  float lx, ly;
+  float x0, y0; /* where X = Y = 0, in the level's px */
+  bool raised;
+} rc_chart;
+
+typedef struct rc_place {
+  float x, y;     /* source position X', relative like X */
+  float ratio;    /* w(X') / w(X): the source's resolution over the target's, across */
+  float mismatch; /* ratio over the copy's own scale: 1 for flat copies */
+  bool beyond;    /* behind the horizon: the rest is meaningless */
+} rc_place;
+
+static inline bool rc_same_copy(rc_copy p, rc_copy q) {
+  return p.a == q.a && p.b == q.b && p.r == q.r;
+}
+
+static inline rc_place rc_copy_place(const rc_chart *chart, rc_copy copy, float x, float y) {
+  rc_place place;
+  float w = 1.f + chart->lx * x + chart->ly * y;
+  if (chart->raised) {
+    place.x = copy.r * x + copy.a;
+    place.y = copy.r * y + copy.b;
+    float there = 1.f + chart->lx * place.x + chart->ly * place.y;
+    place.ratio = there / w;
+    place.mismatch = place.ratio / copy.r;
+    place.beyond = !(there > 0.f);
+    return place;
+  }
+  float divisor = 1.f - (chart->lx * copy.a + chart->ly * copy.b) * w;
+  place.ratio = 1.f / divisor;
+  place.x = (x + copy.a * w) * place.ratio;
+  place.y = (y + copy.b * w) * place.ratio;
+  place.mismatch = 1.f;
+  place.beyond = !(divisor > 1e-3f);
+  return place;
+}
+
+/* dX'/dX at a place, row by row: (xx, xy; yx, yy). */
+static inline void rc_copy_jacobian(const rc_chart *chart, rc_copy copy, const rc_place *place,
+                                    float jacobian[4]) {
+  if (chart->raised) {
+    jacobian[0] = jacobian[3] = copy.r;
+    jacobian[1] = jacobian[2] = 0.f;
+    return;
+  }
+  float e = chart->lx * copy.a + chart->ly * copy.b;
+  float gx = copy.a + e * place->x, gy = copy.b + e * place->y;
+  jacobian[0] = (1.f + gx * chart->lx) * place->ratio;
+  jacobian[1] = gx * chart->ly * place->ratio;
+  jacobian[2] = gy * chart->lx * place->ratio;
+  jacobian[3] = (1.f + gy * chart->ly) * place->ratio;
+}
+
+/* Eighth-octave steps: 4.4 % off at the most, below what the eye takes for another size. */
+static inline float rc_scale_step(float ratio) {
+  return ratio > .957f && ratio < 1.045f ? 1.f : rc_exp2(roundf(8.f * rc_log2(ratio)) / 8.f);
+}
+
+/* The copy that takes target (x, y) from source (to_x, to_y), all relative to the chart's origin. */
+static inline rc_copy rc_copy_between(const rc_chart *chart, float x, float y, float to_x,
+                                      float to_y) {
+  float w = 1.f + chart->lx * x + chart->ly * y;
+  float there = 1.f + chart->lx * to_x + chart->ly * to_y;
+  if (!chart->raised) return (rc_copy){to_x / there - x / w, to_y / there - y / w, 0.f};
+  float r = rc_scale_step(there / w);
+  if (r == 1.f) return (rc_copy){roundf(to_x - x), roundf(to_y - y), 1.f};
+  return (rc_copy){to_x - r * x, to_y - r * y, r};
+}
+
+/* The same copy one pyramid level finer. */
+static inline rc_copy rc_copy_finer(rc_copy copy) {
+  return (rc_copy){2.f * copy.a, 2.f * copy.b, copy.r};
+}
+
+/* The same plane seen by a level 2^exponent times coarser. */
+static inline rc_chart rc_chart_coarser(rc_chart chart, int exponent) {
+  float unit = (float)(1 << exponent);
+  chart.lx *= unit, chart.ly *= unit;
+  chart.x0 = (chart.x0 + .5f) / unit - .5f;
+  chart.y0 = (chart.y0 + .5f) / unit - .5f;
+  return chart;
+}
+
+#endif

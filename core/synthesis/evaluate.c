@@ -1,0 +1,88 @@
+#include "synthesis/evaluate.h"
+
+#include <math.h>
+#include <string.h>
+
+void rc_query_set(const rc_level *level, int x, int y, rc_query *query) {
+  rc_patch *patch = &query->patch;
+  int32_t sum = 0;
+  for (int i = 0; i < RC_PATCH_LANES; i++) {
+    int px = x + rc_lane_x[i], py = y + rc_lane_y[i];
+    bool there = i % RC_PATCH_CHUNK < RC_PATCH_PIXELS / 3 &&
+                 rc_inside(level->width, level->height, px, py);
+    size_t at = there ? (size_t)py * (size_t)level->width + (size_t)px : 0;
+    uint32_t pixel = level->pixels[at];
+    patch->red[i] = (int16_t)(pixel & 255);
+    patch->green[i] = (int16_t)(pixel >> 8 & 255);
+    patch->blue[i] = (int16_t)(pixel >> 16 & 255);
+    patch->weight[i] = there ? level->weight[at] : 0;
+    sum += patch->weight[i];
+  }
+  query->per_weight = sum ? 1.f / (3.f * (float)sum) : 0.f;
+  query->x = rc_level_x(level, x);
+  query->y = rc_level_y(level, y);
+  int c = level->classes[rc_level_at(level, x, y)];
+  query->low = level->ranges.low[c];
+  query->high = level->ranges.high[c];
+}
+
+float rc_place_price(float variance, const rc_place *place, float low, float high) {
+  if (place->beyond || !(place->ratio >= low && place->ratio <= high)) return RC_NO_COST;
+  float octaves = 1.5f * rc_log2(place->ratio), price = 0;
+  if (place->mismatch != 1.f) {
+    if (!(place->mismatch < RC_MOST_MISMATCH && place->mismatch > 1.f / RC_MOST_MISMATCH))
+      return RC_NO_COST;
+    float off = rc_log2(place->mismatch);
+    price = RC_PRICE_MISMATCH * off * off;
+  }
+  price += (octaves < 0.f ? RC_PRICE_COARSE : RC_PRICE_FINE) * octaves * octaves;
+  return variance * price;
+}
+
+static int32_t fixed(float value) { return (int32_t)floorf(value * 65536.f + .5f); }
+
+/* How far from its centre a footprint's pixels lie, Chebyshev, rounded up. */
+static int reach(const float j[4]) {
+  float x = fabsf(j[0]) + fabsf(j[1]), y = fabsf(j[2]) + fabsf(j[3]);
+  return (int)(RC_PATCH_RADIUS * fmaxf(x, y) + 1.f);
+}
+
+static bool set_footprint(const rc_level *level, const rc_chart *chart, rc_copy copy,
+                          const rc_place *place, rc_footprint *footprint) {
+  float jacobian[4], x = place->x + chart->x0, y = place->y + chart->y0;
+  if (!(x >= 0.f && y >= 0.f && x <= (float)(level->width - 1) && y <= (float)(level->height - 1)))
+    return false;
+  int ix = (int)x, iy = (int)y;
+  size_t at = (size_t)iy * (size_t)level->width + (size_t)ix;
+  if (level->room[at] < RC_PATCH_RADIUS + 1) return false;
+  rc_copy_jacobian(chart, copy, place, jacobian);
+  if (level->room[at] <= reach(jacobian)) return false;
+  footprint->origin = level->pixels + at;
+  footprint->stride = level->width;
+  footprint->x = fixed(x - (float)ix) + 32768;
+  footprint->y = fixed(y - (float)iy) + 32768;
+  footprint->xx = fixed(jacobian[0]), footprint->xy = fixed(jacobian[1]);
+  footprint->yx = fixed(jacobian[2]), footprint->yy = fixed(jacobian[3]);
+  return true;
+}
+
+float rc_query_cost(const rc_level *level, const rc_kernels *kernels, const rc_query *query,
+                    rc_copy copy, float limit) {
+  rc_footprint footprint;
+  rc_place place = rc_copy_place(&level->chart, copy, query->x, query->y);
+  float price = rc_place_price(level->variance, &place, query->low, query->high);
+  if (price >= limit || !set_footprint(level, &level->chart, copy, &place, &footprint))
+    return RC_NO_COST;
+  float most = query->per_weight > 0.f ? (limit - price) / query->per_weight : 0.f;
+  uint32_t stop = most < 4e9f ? (uint32_t)most + 1u : 4000000000u;
+  return price + (float)kernels->distance(&query->patch, &footprint, stop) * query->per_weight;
+}
+
+bool rc_place_pixel(const rc_level *level, const rc_place *place, uint32_t *pixel) {
+  float x = place->x + level->chart.x0 + .5f, y = place->y + level->chart.y0 + .5f;
+  if (place->beyond || !(x >= 0.f && y >= 0.f && x < (float)level->width && y < (float)level->height))
+    return false;
+  size_t at = (size_t)(int)y * (size_t)level->width + (size_t)(int)x;
+  *pixel = level->pixels[at];
+  return level->room[at] > 0;
+}

@@ -1,0 +1,36 @@
+/* What a copy costs at a pixel: the distance of the patches, the price of another resolution. */
+#ifndef RECEDE_SYNTHESIS_EVALUATE_H
+#define RECEDE_SYNTHESIS_EVALUATE_H
+
+#include "synthesis/level.h"
+
+/* Prices in units of the picture's variance, per log2(s)^2 with s = ratio^1.5: too coarse a source is
+ * blurred, too fine a one costs little. */
+#define RC_PRICE_COARSE .3f
+#define RC_PRICE_FINE .02f
+/* And of a raised copy whose one scale does not fit its depth, per log2(mismatch)^2. */
+#define RC_PRICE_MISMATCH .3f
+/* A raised copy may be off by its scale step and a little more. */
+#define RC_MOST_MISMATCH 1.1f
+
+#define RC_NO_COST 1e30f
+
+/* The target patch at one pixel, ready to be compared. */
+typedef struct rc_query {
+  rc_patch patch;
+  float per_weight; /* 1 / (3 * sum of weights) */
+  float x, y;       /* relative to the chart's origin */
+  float low, high;  /* ratios allowed here */
+} rc_query;
+
+void rc_query_set(const rc_level *level, int x, int y, rc_query *query);
+/* Cost of the copy there, or any value >= limit (RC_NO_COST when it is not allowed: wrong scale, or
+ * its footprint is not wholly source). */
+float rc_query_cost(const rc_level *level, const rc_kernels *kernels, const rc_query *query,
+                    rc_copy copy, float limit);
+/* Price of ratio and mismatch alone; RC_NO_COST outside the allowed range. */
+float rc_place_price(float variance, const rc_place *place, float low, float high);
+/* The level's pixel nearest to a place; false when it is no source. */
+bool rc_place_pixel(const rc_level *level, const rc_place *place, uint32_t *pixel);
+
+#endif

@@ -1,0 +1,219 @@
+#include "synthesis/level.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/random.h"
+#include "image/distance.h"
+
+/* Ratios of s = ratio^1.5 in .9 .. 1.2: wider ones score the same on flat patterns but lean and
+ * stretch real stones. */
+#define NARROW_LOW .932f
+#define NARROW_HIGH 1.129f
+/* A class's range is widened until it holds this many times its target's pixels in sources. */
+#define ENOUGH_SOURCE 2.0
+#define LEAST_SOURCE_PIXELS 64
+#define WIDEN_BY 1.3f
+#define WIDEST 8.f
+
+static uint32_t encode(float value, float gain) {
+  float byte = value * gain + 128.5f;
+  return byte < 0.f ? 0u : byte >= 255.f ? 255u : (uint32_t)byte;
+}
+
+static void pack(const rc_image *image, float gain, uint32_t *pixels) {
+  size_t count = (size_t)image->width * (size_t)image->height;
+  const float *v = image->data;
+  if (image->channels == 1)
+    for (size_t i = 0; i < count; i++) pixels[i] = encode(v[i], gain) * 0x010101u;
+  else
+    for (size_t i = 0; i < count; i++)
+      pixels[i] = encode(v[3 * i], gain) | encode(v[3 * i + 1], gain) << 8 |
+                  encode(v[3 * i + 2], gain) << 16;
+}
+
+static void set_weights(rc_level *level, float gamma) {
+  uint8_t table[256];
+  size_t count = (size_t)level->width * (size_t)level->height;
+  for (int i = 0; i < 256; i++) {
+    float weight = RC_WEIGHT_ONE * rc_exp2(-(float)i * rc_log2(gamma));
+    table[i] = weight < 1.f ? 1 : (uint8_t)(weight + .5f);
+  }
+  rc_distance_inside(level->flags, RC_TARGET, level->width, level->height, false, level->weight);
+  for (size_t i = 0; i < count; i++)
+    level->weight[i] = level->flags[i] & RC_TARGET  ? table[level->weight[i]]
+                       : level->flags[i] & RC_KNOWN ? RC_WEIGHT_ONE
+                                                    : 0;
+}
+
+static void find_box(rc_level *level) {
+  rc_box box = {level->width, level->height, 0, 0};
+  for (int y = 0; y < level->height; y++)
+    for (int x = 0; x < level->width; x++) {
+      if (!rc_level_is_target(level, x, y)) continue;
+      if (x < box.x0) box.x0 = x;
+      if (x >= box.x1) box.x1 = x + 1;
+      if (y < box.y0) box.y0 = y;
+      box.y1 = y + 1;
+    }
+  level->box = box;
+  level->box_w = box.x1 - box.x0;
+  level->box_h = box.y1 - box.y0;
+}
+
+static void set_variance(rc_level *level) {
+  double sum[3] = {0}, square[3] = {0}, count = 0, total = 0;
+  for (size_t i = 0; i < (size_t)level->width * (size_t)level->height; i++) {
+    if (!(level->flags[i] & RC_SOURCE)) continue;
+    count++;
+    for (int k = 0; k < 3; k++) {
+      double v = level->pixels[i] >> 8 * k & 255;
+      sum[k] += v, square[k] += v * v;
+    }
+  }
+  for (int k = 0; k < 3 && count > 0; k++)
+    total += square[k] / count - sum[k] / count * (sum[k] / count);
+  level->variance = fmaxf((float)(total / 3), 1.f);
+}
+
+static void for_each_source(rc_level *level, int32_t *fill) {
+  for (int y = 0; y < level->height; y++)
+    for (int x = 0; x < level->width; x++) {
+      size_t i = (size_t)y * (size_t)level->width + (size_t)x;
+      if (level->room[i] <= RC_PATCH_RADIUS + 1) continue;
+      float w = rc_level_w(level, rc_level_x(level, x), rc_level_y(level, y));
+      if (!(w > 0.f)) continue;
+      int bin = (int)((rc_log2(w) - level->bin_log2_w0) * RC_BINS_PER_OCTAVE);
+      bin = bin < 0 ? 0 : bin >= level->bins ? level->bins - 1 : bin;
+      if (level->order)
+        level->order[fill[bin]++] = (int32_t)i;
+      else
+        fill[bin]++;
+    }
+}
+
+/* A counting sort of the sources by log2 w. */
+static recede_status sort_sources(rc_context *context, rc_level *level) {
+  int32_t count[RC_MAX_BINS] = {0};
+  float least = 1e9f, most = 1e-9f;
+  for (int c = 0; c < 4; c++) {
+    float w = rc_level_w(level, rc_level_x(level, c & 1 ? level->width - 1 : 0),
+                         rc_level_y(level, c & 2 ? level->height - 1 : 0));
+    least = fminf(least, w), most = fmaxf(most, w);
+  }
+  least = fmaxf(least, .02f);
+  most = fmaxf(most, least);
+  level->bin_log2_w0 = rc_log2(least);
+  level->bins = (int)(rc_log2(most / least) * RC_BINS_PER_OCTAVE) + 1;
+  if (level->bins > RC_MAX_BINS) level->bins = RC_MAX_BINS;
+  level->order = NULL;
+  for_each_source(level, count);
+  level->first[0] = 0;
+  for (int b = 0; b < level->bins; b++) {
+    level->first[b + 1] = level->first[b] + count[b];
+    count[b] = level->first[b];
+  }
+  RC_TRY(RC_NEW(context, level->first[level->bins] + 1, &level->order));
+  for_each_source(level, count);
+  return RECEDE_OK;
+}
+
+/* Sources with w in low..high: a run of level->order. */
+static void bins_between(const rc_level *level, float low, float high, int *begin, int *end) {
+  int from = (int)floorf((rc_log2(low) - level->bin_log2_w0) * RC_BINS_PER_OCTAVE);
+  int to = (int)floorf((rc_log2(high) - level->bin_log2_w0) * RC_BINS_PER_OCTAVE) + 1;
+  from = from < 0 ? 0 : from > level->bins ? level->bins : from;
+  to = to < from ? from : to > level->bins ? level->bins : to;
+  *begin = level->first[from];
+  *end = level->first[to];
+}
+
+static float log2_w_at(const rc_level *level, int x, int y) {
+  return rc_log2(fmaxf(rc_level_w(level, rc_level_x(level, x), rc_level_y(level, y)), 1e-4f));
+}
+
+/* Class of each target pixel; counts[] pixels in each class. */
+static void classify(rc_level *level, double counts[RC_MAX_CLASSES]) {
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      if (!rc_level_is_target(level, x, y)) continue;
+      int c = (int)((log2_w_at(level, x, y) - level->ranges.log2_w0) / RC_CLASS_OCTAVES);
+      c = c < 0 ? 0 : c >= level->ranges.count ? level->ranges.count - 1 : c;
+      level->classes[rc_level_at(level, x, y)] = (uint8_t)c;
+      counts[c]++;
+    }
+}
+
+static void make_classes(rc_level *level) {
+  float least = 1e9f, most = -1e9f;
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      if (!rc_level_is_target(level, x, y)) continue;
+      float v = log2_w_at(level, x, y);
+      least = fminf(least, v), most = fmaxf(most, v);
+    }
+  level->ranges.log2_w0 = least;
+  int count = (int)((most - least) / RC_CLASS_OCTAVES) + 1;
+  level->ranges.count = count > RC_MAX_CLASSES ? RC_MAX_CLASSES : count;
+}
+
+/* Starts narrow and widens a class's range while it holds too little source. */
+static void set_ranges(rc_level *level, const double counts[RC_MAX_CLASSES]) {
+  for (int c = 0; c < level->ranges.count; c++) {
+    float low = NARROW_LOW, high = NARROW_HIGH;
+    float w = rc_exp2(level->ranges.log2_w0 + ((float)c + .5f) * RC_CLASS_OCTAVES);
+    for (;;) {
+      int begin, end;
+      bins_between(level, w * low, w * high, &begin, &end);
+      if (end - begin >= fmax(ENOUGH_SOURCE * counts[c], LEAST_SOURCE_PIXELS) || high > WIDEST)
+        break;
+      low /= WIDEN_BY, high *= WIDEN_BY;
+    }
+    level->ranges.low[c] = low;
+    level->ranges.high[c] = high;
+  }
+}
+
+bool rc_level_random_source(const rc_level *level, float x, float y, int class_index, uint64_t bits,
+                            int *source_x, int *source_y) {
+  int begin, end;
+  float w = rc_level_w(level, x, y);
+  bins_between(level, w * level->ranges.low[class_index], w * level->ranges.high[class_index],
+               &begin, &end);
+  if (begin == end) return false;
+  int32_t i = level->order[begin + (int)rc_below((uint32_t)bits, (uint32_t)(end - begin))];
+  *source_x = i % level->width;
+  *source_y = i / level->width;
+  return true;
+}
+
+recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_mask *flags,
+                           const rc_chart *chart, float gamma, float gain, const rc_ranges *ranges,
+                           rc_level *level) {
+  size_t count = (size_t)image->width * (size_t)image->height;
+  double counts[RC_MAX_CLASSES] = {0};
+  memset(level, 0, sizeof *level);
+  level->width = image->width;
+  level->height = image->height;
+  level->flags = flags->data;
+  level->chart = *chart;
+  RC_TRY(RC_NEW(context, count, &level->pixels));
+  RC_TRY(RC_NEW(context, count, &level->weight));
+  RC_TRY(RC_NEW(context, count, &level->room));
+  pack(image, gain, level->pixels);
+  rc_distance_inside(level->flags, RC_SOURCE, level->width, level->height, true, level->room);
+  set_weights(level, gamma);
+  find_box(level);
+  set_variance(level);
+  size_t box = (size_t)level->box_w * (size_t)level->box_h;
+  RC_TRY(RC_NEW(context, box, &level->field));
+  RC_TRY(RC_NEW(context, box, &level->cost));
+  RC_TRY(RC_NEW_ZERO(context, box, &level->classes));
+  RC_TRY(sort_sources(context, level));
+  make_classes(level);
+  if (ranges) level->ranges = *ranges;
+  classify(level, counts);
+  if (!ranges) set_ranges(level, counts);
+  return RECEDE_OK;
+}

@@ -1,0 +1,67 @@
+/* One level of the pyramid as the search sees it: bytes for pixels, what each pixel is and counts,
+ * where sources of which scale lie, and the field of copies over the target's box. */
+#ifndef RECEDE_SYNTHESIS_LEVEL_H
+#define RECEDE_SYNTHESIS_LEVEL_H
+
+#include "image/image.h"
+#include "kernels/kernels.h"
+#include "synthesis/copy.h"
+
+/* Target pixels are sorted by w into classes of .3 octave, each with its own range of scales. */
+#define RC_CLASS_OCTAVES .3f
+#define RC_MAX_CLASSES 24
+/* Sources are sorted by w into bins this fine to draw random ones of a scale. */
+#define RC_BINS_PER_OCTAVE 32
+#define RC_MAX_BINS 512
+
+/* Which ratios w(source) / w(target) a class of target pixels may copy from. */
+typedef struct rc_ranges {
+  float log2_w0; /* of the first class's lower end */
+  int count;
+  float low[RC_MAX_CLASSES], high[RC_MAX_CLASSES];
+} rc_ranges;
+
+typedef struct rc_level {
+  int width, height;
+  uint32_t *pixels; /* 0x00BBGGRR; in the target the current guide */
+  uint8_t *flags;   /* RC_TARGET ... */
+  uint8_t *weight;  /* 0..RC_WEIGHT_ONE: how much the pixel counts in a target patch */
+  uint8_t *room;    /* Chebyshev distance to the nearest pixel that is no source; 0 = is none */
+  rc_chart chart;
+  rc_box box; /* of the target */
+  int box_w, box_h;
+  rc_copy *field;   /* box_w * box_h, row by row; NAN a = none yet */
+  float *cost;      /* of the field's copies without the price of incoherence */
+  uint8_t *classes; /* class of each box pixel */
+  rc_ranges ranges;
+  float variance; /* of known pixels, byte^2, mean over channels */
+  /* Sources sorted by w: indices of pixels, bin b at order[first[b]] .. order[first[b + 1]]. */
+  int32_t *order;
+  int32_t first[RC_MAX_BINS + 1];
+  float bin_log2_w0;
+  int bins;
+} rc_level;
+
+static inline float rc_level_x(const rc_level *level, int x) { return (float)x - level->chart.x0; }
+static inline float rc_level_y(const rc_level *level, int y) { return (float)y - level->chart.y0; }
+static inline float rc_level_w(const rc_level *level, float x, float y) {
+  return 1.f + level->chart.lx * x + level->chart.ly * y;
+}
+static inline size_t rc_level_at(const rc_level *level, int x, int y) {
+  return (size_t)(y - level->box.y0) * (size_t)level->box_w + (size_t)(x - level->box.x0);
+}
+static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
+  return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & RC_TARGET) != 0;
+}
+
+/* byte = value * gain + 128. gamma: a target pixel counts gamma times less for each px it is deeper
+ * in the hole; 1 = the same. ranges NULL: made here from what sources there are. */
+recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_mask *flags,
+                           const rc_chart *chart, float gamma, float gain, const rc_ranges *ranges,
+                           rc_level *level);
+/* A random source pixel of the right scale for a target pixel of relative position (x, y) and class;
+ * false when there is none. */
+bool rc_level_random_source(const rc_level *level, float x, float y, int class_index, uint64_t bits,
+                            int *source_x, int *source_y);
+
+#endif

@@ -1,0 +1,150 @@
+#include "synthesis/start.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "image/distance.h"
+
+#define REFINE_FROM_PX 8
+#define PIXELS_PER_ITEM 16
+
+typedef struct ring {
+  rc_level *level;
+  const rc_search *search;
+  const int32_t *pixels; /* of this ring */
+  int count;
+} ring;
+
+typedef struct choice {
+  rc_query query;
+  rc_copy best;
+  float cost;
+} choice;
+
+static void consider(const ring *r, choice *c, rc_copy copy) {
+  if (isnan(copy.a) || rc_same_copy(copy, c->best)) return;
+  float cost = rc_query_cost(r->level, r->search->kernels, &c->query, copy, c->cost);
+  if (cost >= c->cost) return;
+  c->cost = cost;
+  c->best = copy;
+}
+
+static void consider_neighbours(const ring *r, choice *c, int x, int y) {
+  const rc_level *level = r->level;
+  for (int dy = -1; dy <= 1; dy++)
+    for (int dx = -1; dx <= 1; dx++)
+      if (rc_inside(level->width, level->height, x + dx, y + dy) &&
+          rc_level_is_target(level, x + dx, y + dy))
+        consider(r, c, level->field[rc_level_at(level, x + dx, y + dy)]);
+}
+
+static void consider_chance(const ring *r, choice *c, int x, int y) {
+  const rc_level *level = r->level;
+  int sx, sy, class_index = level->classes[rc_level_at(level, x, y)];
+  for (int n = 0; n < r->search->anywhere; n++) {
+    uint64_t bits = rc_random(r->search->key, (uint32_t)x, (uint32_t)y, (uint32_t)n);
+    if (!rc_level_random_source(level, c->query.x, c->query.y, class_index, bits, &sx, &sy)) return;
+    consider(r, c,
+             rc_copy_between(&level->chart, c->query.x, c->query.y, rc_level_x(level, sx),
+                             rc_level_y(level, sy)));
+  }
+}
+
+static void refine(const ring *r, choice *c, int x, int y) {
+  const rc_level *level = r->level;
+  for (int radius = REFINE_FROM_PX, n = 0; radius; radius /= 2)
+    for (int k = 0; k < 4; k++, n++) {
+      if (isnan(c->best.a)) return;
+      rc_place place = rc_copy_place(&level->chart, c->best, c->query.x, c->query.y);
+      uint64_t bits = rc_random(r->search->key, (uint32_t)x, (uint32_t)y, 500u + (uint32_t)n);
+      int dx = (int)rc_below((uint32_t)bits, 2u * (uint32_t)radius + 1) - radius;
+      int dy = (int)rc_below((uint32_t)(bits >> 32), 2u * (uint32_t)radius + 1) - radius;
+      if (!(rc_level_w(level, place.x + (float)dx, place.y + (float)dy) > 0.f)) continue;
+      consider(r, c,
+               rc_copy_between(&level->chart, c->query.x, c->query.y, place.x + (float)dx,
+                               place.y + (float)dy));
+    }
+}
+
+static void consider_periods(const ring *r, choice *c) {
+  for (int n = 0; n < r->search->period_count && !r->level->chart.raised; n++)
+    consider(r, c, r->search->periods[n]);
+}
+
+static void choose(const ring *r, int32_t pixel) {
+  rc_level *level = r->level;
+  int x = pixel % level->width, y = pixel / level->width;
+  choice c = {.best = {NAN, NAN, NAN}, .cost = RC_NO_COST};
+  rc_query_set(level, x, y, &c.query);
+  consider_neighbours(r, &c, x, y);
+  consider_periods(r, &c);
+  consider_chance(r, &c, x, y);
+  refine(r, &c, x, y);
+  size_t at = rc_level_at(level, x, y);
+  level->field[at] = c.best;
+  level->cost[at] = c.cost;
+}
+
+/* Pixels of one ring read the rings before it only. */
+static void choose_some(void *user, int item, int thread) {
+  const ring *r = user;
+  (void)thread;
+  int end = (item + 1) * PIXELS_PER_ITEM < r->count ? (item + 1) * PIXELS_PER_ITEM : r->count;
+  for (int i = item * PIXELS_PER_ITEM; i < end; i++) choose(r, r->pixels[i]);
+}
+
+static void show(const ring *r, const uint8_t *final_weight) {
+  rc_level *level = r->level;
+  for (int i = 0; i < r->count; i++) {
+    int x = r->pixels[i] % level->width, y = r->pixels[i] / level->width;
+    rc_copy copy = level->field[rc_level_at(level, x, y)];
+    uint32_t colour;
+    if (isnan(copy.a)) continue;
+    rc_place place = rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
+    if (!rc_place_pixel(level, &place, &colour)) continue;
+    level->pixels[r->pixels[i]] = colour;
+    level->weight[r->pixels[i]] = final_weight[r->pixels[i]];
+  }
+}
+
+/* Target pixels by their distance from the border: ring n at pixels[first[n]] .. [first[n + 1]]. */
+static void sort_rings(const rc_level *level, const uint8_t *depth, int32_t *pixels,
+                       int32_t first[257]) {
+  size_t count = (size_t)level->width * (size_t)level->height;
+  int32_t next[256];
+  memset(first, 0, 257 * sizeof *first);
+  for (size_t i = 0; i < count; i++)
+    if (depth[i]) first[depth[i] + 1]++;
+  for (int n = 0; n < 256; n++) first[n + 1] += first[n];
+  memcpy(next, first, sizeof next);
+  for (size_t i = 0; i < count; i++)
+    if (depth[i]) pixels[next[depth[i]]++] = (int32_t)i;
+}
+
+recede_status rc_start(rc_context *context, rc_level *level, const rc_search *search) {
+  size_t count = (size_t)level->width * (size_t)level->height;
+  size_t box = (size_t)level->box_w * (size_t)level->box_h;
+  uint8_t *depth, *final_weight;
+  int32_t *pixels, first[257];
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, count, &depth));
+  RC_TRY(RC_NEW(context, count, &final_weight));
+  RC_TRY(RC_NEW(context, box, &pixels));
+  memcpy(final_weight, level->weight, count);
+  rc_distance_inside(level->flags, RC_TARGET, level->width, level->height, false, depth);
+  sort_rings(level, depth, pixels, first);
+  for (size_t i = 0; i < count; i++)
+    if (depth[i]) level->weight[i] = 0;
+  for (size_t i = 0; i < box; i++) level->field[i] = (rc_copy){NAN, NAN, NAN};
+  for (int n = 1; n < 256; n++) {
+    ring r = {level, search, pixels + first[n], first[n + 1] - first[n]};
+    if (!r.count) continue;
+    RC_TRY(rc_parallel(context, (r.count + PIXELS_PER_ITEM - 1) / PIXELS_PER_ITEM, choose_some, &r));
+    show(&r, final_weight);
+  }
+  memcpy(level->weight, final_weight, count);
+  rc_release(context, mark);
+  return RECEDE_OK;
+}

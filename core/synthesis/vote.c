@@ -1,0 +1,118 @@
+#include "synthesis/vote.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "synthesis/evaluate.h"
+
+/* Every second patch in x and y votes: a quarter of the work, and no score lost. */
+#define STRIDE 2
+/* Sharpness of the vote: exp(-cost / (2 * .05 * p75)). */
+#define SHARPNESS .05f
+
+typedef struct ballot {
+  rc_level *level;
+  float *weight; /* of each box pixel's patch */
+  uint32_t *guide;
+} ballot;
+
+static int by_value(const void *a, const void *b) {
+  float p = *(const float *)a, q = *(const float *)b;
+  return (p > q) - (p < q);
+}
+
+/* The 75th percentile of a regular sample of the costs. */
+static float upper_quartile(const rc_level *level) {
+  float sample[1024];
+  int count = 0;
+  size_t box = (size_t)level->box_w * (size_t)level->box_h, step = box / 1024 + 1;
+  for (size_t i = 0; i < box && count < 1024; i += step) {
+    int x = level->box.x0 + (int)(i % (size_t)level->box_w);
+    int y = level->box.y0 + (int)(i / (size_t)level->box_w);
+    if (rc_level_is_target(level, x, y) && level->cost[i] < RC_NO_COST)
+      sample[count++] = level->cost[i];
+  }
+  if (!count) return 1.f;
+  qsort(sample, (size_t)count, sizeof *sample, by_value);
+  return fmaxf(sample[count * 3 / 4], 1e-3f);
+}
+
+static void set_vote_weights(const ballot *b) {
+  const rc_level *level = b->level;
+  float scale = -1.f / (2.f * SHARPNESS * upper_quartile(level));
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      size_t at = rc_level_at(level, x, y);
+      bool votes = rc_level_is_target(level, x, y) && !isnan(level->field[at].a);
+      float trust = level->weight[(size_t)y * (size_t)level->width + (size_t)x];
+      /* The floor keeps a pixel whose patches all fit badly from having no vote at all. */
+      b->weight[at] = votes ? trust * fmaxf(rc_exp(scale * level->cost[at]), 1e-6f) : 0.f;
+    }
+}
+
+static void vote_pixel(const ballot *b, int x, int y) {
+  const rc_level *level = b->level;
+  float sum[4] = {0, 0, 0, 0};
+  size_t own = rc_level_at(level, x, y);
+  for (int dy = -RC_PATCH_RADIUS; dy <= RC_PATCH_RADIUS; dy += STRIDE)
+    for (int dx = -RC_PATCH_RADIUS; dx <= RC_PATCH_RADIUS; dx += STRIDE) {
+      int px = x + dx, py = y + dy;
+      uint32_t colour;
+      if (px < level->box.x0 || px >= level->box.x1 || py < level->box.y0 || py >= level->box.y1)
+        continue;
+      size_t at = rc_level_at(level, px, py);
+      if (!(b->weight[at] > 0.f)) continue;
+      rc_place place = rc_copy_place(&level->chart, level->field[at], rc_level_x(level, x),
+                                     rc_level_y(level, y));
+      if (!rc_place_pixel(level, &place, &colour)) continue;
+      float weight = b->weight[at];
+      sum[0] += weight * (float)(colour & 255);
+      sum[1] += weight * (float)(colour >> 8 & 255);
+      sum[2] += weight * (float)(colour >> 16 & 255);
+      sum[3] += weight;
+    }
+  uint32_t colour = level->pixels[(size_t)y * (size_t)level->width + (size_t)x];
+  if (sum[3] > 0.f)
+    colour = (uint32_t)(sum[0] / sum[3] + .5f) | (uint32_t)(sum[1] / sum[3] + .5f) << 8 |
+             (uint32_t)(sum[2] / sum[3] + .5f) << 16;
+  b->guide[own] = colour;
+}
+
+static void vote_row(void *user, int item, int thread) {
+  const ballot *b = user;
+  int y = b->level->box.y0 + item;
+  (void)thread;
+  for (int x = b->level->box.x0; x < b->level->box.x1; x++)
+    if (rc_level_is_target(b->level, x, y)) vote_pixel(b, x, y);
+}
+
+recede_status rc_vote(rc_context *context, rc_level *level, uint32_t *guide) {
+  ballot b = {level, NULL, guide};
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, (size_t)level->box_w * (size_t)level->box_h, &b.weight));
+  set_vote_weights(&b);
+  RC_TRY(rc_parallel(context, level->box_h, vote_row, &b));
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++)
+      if (rc_level_is_target(level, x, y))
+        level->pixels[(size_t)y * (size_t)level->width + (size_t)x] = guide[rc_level_at(level, x, y)];
+  rc_release(context, mark);
+  return RECEDE_OK;
+}
+
+void rc_field_from_coarser(rc_level *level, const rc_level *coarser) {
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      size_t at = rc_level_at(level, x, y);
+      level->field[at] = (rc_copy){NAN, NAN, NAN};
+      level->cost[at] = RC_NO_COST;
+      /* An odd last row or column has no pixel of its own one level up. */
+      int cx = x / 2 < coarser->box.x1 ? x / 2 : coarser->box.x1 - 1;
+      int cy = y / 2 < coarser->box.y1 ? y / 2 : coarser->box.y1 - 1;
+      if (!rc_level_is_target(level, x, y) || !rc_level_is_target(coarser, cx, cy)) continue;
+      level->field[at] = rc_copy_finer(coarser->field[rc_level_at(coarser, cx, cy)]);
+      level->cost[at] = coarser->cost[rc_level_at(coarser, cx, cy)];
+    }
+}
