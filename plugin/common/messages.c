@@ -1,0 +1,107 @@
+/* What the user reads. The core speaks English; here stands what is to be translated. */
+#include "messages.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "intl.h"
+
+const char *rp_target_refusal(const rp_target *target, gboolean writes, gboolean new_layer) {
+  if (target->group)
+    return _("A layer group has no pixels of its own. Select one layer inside the group.");
+  if (target->indexed)
+    return _("The image is indexed: the fill needs colours that its palette lacks. Change it with "
+             "Image > Mode > RGB first.");
+  if (target->floating)
+    return _("A floating selection cannot be filled. Anchor it first: Layer > Anchor Layer.");
+  if (new_layer && !target->is_layer)
+    return _("A channel or layer mask can only be filled in place. Choose the result In place, or "
+             "select a layer.");
+  if (!writes || new_layer) return NULL;
+  if (target->text)
+    return _("This is a text layer. Choose Layer > Discard Text Information first, or fill into a "
+             "new layer.");
+  if (target->locked)
+    return _("The layer's pixels are locked. Unlock them in the Layers dialog, or fill into a new "
+             "layer.");
+  return NULL;
+}
+
+const char *rp_no_selection(void) {
+  return _("Nothing is selected. Select what is to be filled, for instance with the free select "
+           "tool, and start again.");
+}
+
+const char *rp_selection_outside(void) {
+  return _("The selection lies outside the layer. Select the layer it belongs to, or enlarge the "
+           "layer with Layer > Layer to Image Size.");
+}
+
+const char *rp_one_layer_only(void) {
+  return _("Several layers are selected. Select exactly one and start again.");
+}
+
+const char *rp_no_memory(void) {
+  return _("There is not enough memory for this picture. Close other images or scale it down.");
+}
+
+static const struct {
+  const char *stage, *label;
+} stages[] = {
+    {"prepare", N_("Preparing")},
+    {"orientation", N_("Reading the orientation")},
+    {"write", N_("Writing")},
+};
+
+const char *rp_stage_label(const char *stage) {
+  for (gsize i = 0; i < G_N_ELEMENTS(stages); i++)
+    if (strcmp(stages[i].stage, stage) == 0) return _(stages[i].label);
+  return _("Filling");
+}
+
+char *rp_failure(const rp_request *request) {
+  switch (request->status) {
+    case RECEDE_NO_MEMORY: return g_strdup(rp_no_memory());
+    case RECEDE_EMPTY_TARGET:
+      return g_strdup(_("Nothing of the selection lies on the plane: it is all beyond the horizon. "
+                        "Check the horizon in the preview, or change slant and tilt."));
+    case RECEDE_EMPTY_SOURCE:
+      return g_strdup(_("Nothing is left to copy from. Select less, or choose another source."));
+    case RECEDE_NO_PLANE:
+      return g_strdup(_("The orientation of the plane could not be read from the picture. Set "
+                        "slant and tilt."));
+    case RECEDE_TOO_LARGE:
+      return g_strdup_printf(_("This needs more memory than there is (%.0f MiB). Select less or "
+                               "scale the picture down."),
+                             ceil((double)request->report.estimated_bytes / (1 << 20)));
+    default: return g_strdup(request->message[0] ? request->message : _("An unknown fault."));
+  }
+}
+
+static void add_sentence(GString *text, char *sentence) {
+  if (text->len) g_string_append_c(text, ' ');
+  g_string_append(text, sentence);
+  g_free(sentence);
+}
+
+char *rp_warning(const rp_request *request) {
+  const recede_report *report = &request->report;
+  GString *text = g_string_new(NULL);
+  if (report->orientation.estimated && report->orientation.confidence < RECEDE_CONFIDENCE_LOW)
+    add_sentence(text, g_strdup(_("The orientation could not be read from the picture with "
+                                  "confidence; it was filled without perspective. Set slant and "
+                                  "tilt.")));
+  if (report->refused_pixels > 0)
+    add_sentence(text, g_strdup_printf(_("%.0f selected pixels lie beyond the horizon and were "
+                                         "left as they are."),
+                                       (double)report->refused_pixels));
+  if (report->magnified_pixels > 0)
+    add_sentence(text,
+                 g_strdup_printf(_("%.0f pixels had to be magnified (up to %.1f times), for "
+                                   "lack of nearer texture; they may look soft."),
+                                 (double)report->magnified_pixels, report->largest_magnification));
+  if (report->nonfinite_pixels > 0)
+    add_sentence(text, g_strdup_printf(_("%.0f pixels are not numbers and were not copied from."),
+                                       (double)report->nonfinite_pixels));
+  return text->len ? g_string_free(text, FALSE) : (g_string_free(text, TRUE), NULL);
+}

@@ -1,0 +1,117 @@
+/* From a procedure's arguments to the changed image. */
+#include "procedure.h"
+
+#include "intl.h"
+
+static gboolean into_new_layer(const rp_settings *settings) {
+  return settings->procedure == RP_FILL && (int)rp_settings_get(settings, "result") == RP_NEW_LAYER;
+}
+
+static gboolean make_request(const rp_settings *settings, const recede_params *params,
+                             rp_picture *picture, rp_request *request) {
+  if (settings->procedure == RP_FILL)
+    return rp_picture_request_fill(picture, params, !into_new_layer(settings), request);
+  return rp_picture_request_synthesize(picture, params, (int)rp_settings_get(settings, "width"),
+                                       (int)rp_settings_get(settings, "height"), request);
+}
+
+static gboolean take_source(const rp_host *host, const rp_settings *settings, rp_picture *picture,
+                            char **message) {
+  int id = settings->procedure == RP_FILL ? (int)rp_settings_get(settings, "source") : -1;
+  rp_pixels_clear(&picture->source);
+  return id < 0 || rp_host_read_source(host, id, picture, message);
+}
+
+rp_outcome rp_compute(const rp_host *host, const rp_settings *settings, rp_picture *picture,
+                      rp_request *request, gboolean (*tell)(const rp_state *state, gpointer user),
+                      gpointer user, char **message) {
+  recede_params params;
+  if (!rp_settings_params(settings, &params, message)) return RP_CALLING_ERROR;
+  if (!take_source(host, settings, picture, message)) return RP_CALLING_ERROR;
+  if (!make_request(settings, &params, picture, request)) {
+    *message = g_strdup(rp_no_memory());
+    return RP_FAILED;
+  }
+  request->threads = rp_host_threads();
+  rp_worker_run(request, tell, user);
+  if (request->status == RECEDE_OK) return RP_DONE;
+  if (request->status == RECEDE_CANCELLED) return RP_CANCELLED;
+  *message = rp_failure(request);
+  return RP_FAILED;
+}
+
+static const char *refusal(const rp_host *host, const rp_settings *settings, gboolean with_dialog) {
+  rp_target target = rp_host_target(host);
+  gboolean fill = settings->procedure == RP_FILL;
+  /* The dialog's user may still choose a new layer. */
+  gboolean writes = fill && !with_dialog;
+  const char *text =
+      rp_target_refusal(&target, writes, fill && !with_dialog && into_new_layer(settings));
+  if (text) return text;
+  return fill && !rp_host_has_selection(host) ? rp_no_selection() : NULL;
+}
+
+static const char *read_picture(const rp_host *host, rp_procedure procedure, rp_picture *picture) {
+  switch (rp_host_read(host, procedure, picture)) {
+    case RP_READ_OK: return NULL;
+    case RP_READ_OUTSIDE: return rp_selection_outside();
+    default: return rp_no_memory();
+  }
+}
+
+static const char *write_result(rp_host *host, const rp_settings *settings,
+                                const rp_picture *picture) {
+  gboolean written = TRUE;
+  if (settings->procedure == RP_SYNTHESIZE)
+    written = rp_host_write_new_image(host, picture);
+  else if (into_new_layer(settings))
+    written = rp_host_write_new_layer(host, picture);
+  else
+    rp_host_write_in_place(host, picture);
+  return written ? NULL : rp_no_memory();
+}
+
+static gboolean tell_gimp(const rp_state *state, gpointer user) {
+  (void)user; /* GIMP's own Cancel ends the process: the image has not been touched */
+  rp_host_progress(rp_stage_label(state->stage), state->fraction);
+  return FALSE;
+}
+
+static rp_outcome obtain_result(rp_host *host, rp_settings *settings, gboolean with_dialog,
+                                rp_picture *picture, rp_request *request, char **message) {
+  if (!with_dialog) return rp_compute(host, settings, picture, request, tell_gimp, NULL, message);
+  return rp_host_dialog(host, settings, picture, request) ? RP_DONE : RP_CANCELLED;
+}
+
+static rp_outcome fail(const char *text, char **message) {
+  *message = g_strdup(text);
+  return RP_FAILED;
+}
+
+static rp_outcome run(rp_host *host, rp_settings *settings, gboolean with_dialog,
+                      rp_picture *picture, char **message) {
+  rp_request request;
+  const char *text = read_picture(host, settings->procedure, picture);
+  if (text) return fail(text, message);
+  rp_outcome outcome = obtain_result(host, settings, with_dialog, picture, &request, message);
+  if (outcome != RP_DONE) return outcome;
+  text = write_result(host, settings, picture);
+  if (text) return fail(text, message);
+  char *warning = rp_warning(&request);
+  if (warning) rp_host_message(warning);
+  g_free(warning);
+  return RP_DONE;
+}
+
+rp_outcome rp_procedure_run(rp_host *host, rp_settings *settings, gboolean with_dialog,
+                            char **message) {
+  rp_picture picture = {.image.view.data = NULL};
+  recede_params params;
+  *message = NULL;
+  if (!rp_settings_params(settings, &params, message)) return RP_CALLING_ERROR;
+  const char *text = refusal(host, settings, with_dialog);
+  if (text) return fail(text, message);
+  rp_outcome outcome = run(host, settings, with_dialog, &picture, message);
+  rp_picture_clear(&picture);
+  return outcome;
+}

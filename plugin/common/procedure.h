@@ -1,0 +1,18 @@
+/* procedure.h - from a procedure's arguments to the changed image, the same in both hosts. */
+#ifndef RP_PROCEDURE_H
+#define RP_PROCEDURE_H
+
+#include "host.h"
+
+typedef enum { RP_DONE, RP_CANCELLED, RP_CALLING_ERROR, RP_FAILED } rp_outcome;
+
+/* message: why it is not RP_DONE (free it), else NULL. settings: as the dialog left them. */
+rp_outcome rp_procedure_run(rp_host *host, rp_settings *settings, gboolean with_dialog,
+                            char **message);
+
+/* One run on a picture that was read; tell as in rp_worker_run(). */
+rp_outcome rp_compute(const rp_host *host, const rp_settings *settings, rp_picture *picture,
+                      rp_request *request, gboolean (*tell)(const rp_state *state, gpointer user),
+                      gpointer user, char **message);
+
+#endif

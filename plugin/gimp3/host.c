@@ -1,0 +1,142 @@
+/* GIMP 3: reading and writing drawables. */
+#include "host.h"
+
+#include "../common/intl.h"
+
+rp_target rp_host_target(const rp_host *host) {
+  GimpItem *item = GIMP_ITEM(host->drawable);
+  gboolean is_layer = gimp_item_is_layer(item);
+  return (rp_target){.group = gimp_item_is_group_layer(item),
+                     .indexed = gimp_drawable_is_indexed(host->drawable),
+                     .locked = gimp_item_get_lock_content(item),
+                     .text = gimp_item_is_text_layer(item),
+                     .floating = is_layer && gimp_layer_is_floating_sel(GIMP_LAYER(item)),
+                     .is_layer = is_layer};
+}
+
+gboolean rp_host_has_selection(const rp_host *host) {
+  return !gimp_selection_is_empty(host->image);
+}
+
+static GeglRectangle area_of(const rp_host *host, rp_procedure procedure) {
+  GeglRectangle area = {0, 0, gimp_drawable_get_width(host->drawable),
+                        gimp_drawable_get_height(host->drawable)};
+  if (procedure == RP_SYNTHESIZE)
+    gimp_drawable_mask_intersect(host->drawable, &area.x, &area.y, &area.width, &area.height);
+  return area;
+}
+
+rp_read_status rp_host_read(const rp_host *host, rp_procedure procedure, rp_picture *picture) {
+  GeglRectangle area = area_of(host, procedure);
+  gint x, y;
+  if (area.width < 1 || area.height < 1) return RP_READ_OUTSIDE;
+  gimp_drawable_get_offsets(host->drawable, &x, &y);
+  GeglBuffer *drawable = gimp_drawable_get_buffer(host->drawable);
+  GeglBuffer *selection =
+      rp_host_has_selection(host)
+          ? gimp_drawable_get_buffer(GIMP_DRAWABLE(gimp_image_get_selection(host->image)))
+          : NULL;
+  rp_read_status status = rp_picture_read(picture, drawable, selection, &area, x, y);
+  g_object_unref(drawable);
+  g_clear_object(&selection);
+  return status;
+}
+
+gboolean rp_host_read_source(const rp_host *host, int id, rp_picture *picture, char **message) {
+  gint x, y;
+  GimpDrawable *drawable = gimp_drawable_get_by_id(id);
+  if (!drawable || gimp_item_get_image(GIMP_ITEM(drawable)) != host->image) {
+    *message = g_strdup(_("source: there is no such channel or layer in this image."));
+    return FALSE;
+  }
+  gimp_drawable_get_offsets(drawable, &x, &y);
+  GeglBuffer *buffer = gimp_drawable_get_buffer(drawable);
+  gboolean read = rp_picture_read_source(picture, buffer, x, y);
+  g_object_unref(buffer);
+  if (!read) *message = g_strdup(rp_no_memory());
+  return read;
+}
+
+/* The shadow's merge is what GIMP can undo; it works in floats, and blends by the selection. The
+ * exact bytes are then laid over it. */
+void rp_host_write_in_place(rp_host *host, const rp_picture *picture) {
+  const GeglRectangle *box = &picture->box;
+  if (GIMP_IS_LAYER(host->drawable) && gimp_layer_get_lock_alpha(GIMP_LAYER(host->drawable)) &&
+      gimp_drawable_has_alpha(host->drawable))
+    rp_pixels_keep_alpha(&picture->image.view, &picture->result.view);
+  GeglBuffer *before = gimp_drawable_get_buffer(host->drawable);
+  GeglBuffer *exact = rp_pixels_replaced(before, &picture->result, &picture->mask.view, box);
+  g_object_unref(before);
+  GeglBuffer *shadow = gimp_drawable_get_shadow_buffer(host->drawable);
+  rp_pixels_write(shadow, &picture->result, &picture->mask.view, box);
+  g_object_unref(shadow);
+  gimp_drawable_merge_shadow(host->drawable, TRUE);
+  GeglBuffer *after = gimp_drawable_get_buffer(host->drawable);
+  gegl_buffer_copy(exact, box, GEGL_ABYSS_NONE, after, box);
+  g_object_unref(after);
+  g_object_unref(exact);
+  gimp_drawable_update(host->drawable, box->x, box->y, box->width, box->height);
+}
+
+static GimpImageType type_with_alpha(GimpDrawable *drawable) {
+  return gimp_drawable_is_gray(drawable) ? GIMP_GRAYA_IMAGE : GIMP_RGBA_IMAGE;
+}
+
+gboolean rp_host_write_new_layer(rp_host *host, const rp_picture *picture) {
+  const GeglRectangle *box = &picture->box;
+  GimpLayer *layer = gimp_layer_new(host->image, _("Perspective Fill"), box->width, box->height,
+                                    type_with_alpha(host->drawable), 100, GIMP_LAYER_MODE_NORMAL);
+  if (!layer) return FALSE;
+  GeglBuffer *buffer = gimp_drawable_get_buffer(GIMP_DRAWABLE(layer));
+  rp_pixels_write_layer(buffer, &picture->result, &picture->mask.view, box);
+  g_object_unref(buffer);
+  gimp_layer_set_offsets(layer, picture->offset_x + box->x, picture->offset_y + box->y);
+  GimpItem *below = GIMP_ITEM(host->drawable), *parent = gimp_item_get_parent(below);
+  return gimp_image_insert_layer(host->image, layer, parent ? GIMP_LAYER(parent) : NULL,
+                                 gimp_image_get_item_position(host->image, below));
+}
+
+static void copy_properties(GimpImage *from, GimpImage *to) {
+  gdouble x, y;
+  GimpColorProfile *profile = gimp_image_get_color_profile(from);
+  if (profile) {
+    gimp_image_set_color_profile(to, profile);
+    g_object_unref(profile);
+  }
+  gimp_image_get_resolution(from, &x, &y);
+  gimp_image_set_resolution(to, x, y);
+  gimp_image_set_unit(to, gimp_image_get_unit(from));
+}
+
+gboolean rp_host_write_new_image(rp_host *host, const rp_picture *picture) {
+  int width = picture->result.view.width, height = picture->result.view.height;
+  GimpImageBaseType base = gimp_drawable_is_gray(host->drawable) ? GIMP_GRAY : GIMP_RGB;
+  GimpImageType type = gimp_drawable_is_gray(host->drawable) ? GIMP_GRAY_IMAGE : GIMP_RGB_IMAGE;
+  if (picture->result.view.channels % 2 == 0) type = type_with_alpha(host->drawable);
+  host->new_image =
+      gimp_image_new_with_precision(width, height, base, gimp_image_get_precision(host->image));
+  if (!host->new_image) return FALSE;
+  gimp_image_undo_disable(host->new_image);
+  copy_properties(host->image, host->new_image);
+  GimpLayer *layer = gimp_layer_new(host->new_image, _("Perspective Texture"), width, height, type,
+                                    100, GIMP_LAYER_MODE_NORMAL);
+  gimp_image_insert_layer(host->new_image, layer, NULL, 0);
+  GeglBuffer *buffer = gimp_drawable_get_buffer(GIMP_DRAWABLE(layer));
+  rp_pixels_write_all(buffer, &picture->result);
+  g_object_unref(buffer);
+  gimp_drawable_update(GIMP_DRAWABLE(layer), 0, 0, width, height);
+  gimp_image_undo_enable(host->new_image);
+  return TRUE;
+}
+
+int rp_host_threads(void) { return gimp_get_num_processors(); }
+
+void rp_host_progress(const char *text, double fraction) {
+  static gboolean begun;
+  if (!begun) gimp_progress_init(_("Perspective Fill"));
+  begun = TRUE;
+  gimp_progress_set_text(text);
+  gimp_progress_update(fraction);
+}
+
+void rp_host_message(const char *text) { gimp_message(text); }
