@@ -1,0 +1,225 @@
+#include "command.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "safe_file.h"
+
+/* Pixels of a picture, without --memory: 350 megapixels of 8-bit RGB, 64 of float with alpha. The
+ * largest photographs have a third of that; what claims more is more likely a trap. */
+#define DEFAULT_PICTURE_BYTES ((uint64_t)1 << 30)
+
+/* -------------------------------------------------------------------------------- messages -- */
+
+static void print_escaped(const char *text) {
+  for (; *text; text++) {
+    if (*text == '\n')
+      fputs("\\n", stderr);
+    else if ((unsigned char)*text < ' ' || *text == 127)
+      fprintf(stderr, "\\x%02x", (unsigned char)*text);
+    else
+      fputc(*text, stderr);
+  }
+}
+
+void command_complain(const char *name, const char *text) {
+  command_progress_clear();
+  fputs("recede: ", stderr);
+  if (name) {
+    print_escaped(name);
+    fputs(": ", stderr);
+  }
+  print_escaped(text);
+  fputc('\n', stderr);
+}
+
+void command_warn(const options *given, const char *name, const char *text) {
+  if (!given->quiet && text[0]) command_complain(name, text);
+}
+
+command_exit command_refuse_image(const char *name, image_status status,
+                                  const image_message *message) {
+  command_complain(name, message->text);
+  switch (status) {
+    case IMAGE_TOO_LARGE:
+    case IMAGE_NO_MEMORY: return EXIT_LIMIT;
+    case IMAGE_OUTPUT: return EXIT_OUTPUT;
+    default: return EXIT_INPUT;
+  }
+}
+
+/* -------------------------------------------------------------------------------- progress -- */
+
+static bool progress_shown;
+
+int command_progress(void *user, const char *stage, double fraction) {
+  (void)user;
+  fprintf(stderr, "\r\033[K%3.0f %% %s", fraction * 100, stage ? stage : "");
+  fflush(stderr);
+  progress_shown = true;
+  return 0;
+}
+
+void command_progress_clear(void) {
+  if (progress_shown) fputs("\r\033[K", stderr);
+  progress_shown = false;
+}
+
+/* --------------------------------------------------------------------------------- signals -- */
+
+static recede_job *volatile running;
+static volatile sig_atomic_t received;
+
+static void on_signal(int number) {
+  recede_job *job = running;
+  if (job && !received) {
+    received = number;
+    recede_job_cancel(job);
+    return;
+  }
+  safe_file_abandon();
+  _exit(128 + number);
+}
+
+void command_signals_init(void) {
+  struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
+  static const int ending[] = {SIGINT, SIGTERM, SIGHUP};
+  for (size_t i = 0; i < sizeof ending / sizeof *ending; i++) {
+    struct sigaction old;
+    /* nohup's ignoring is respected. */
+    if (sigaction(ending[i], NULL, &old) == 0 && old.sa_handler == SIG_IGN) continue;
+    sigaction(ending[i], &action, NULL);
+  }
+  /* A closed pipe and a file-size limit are errors of write(), not ends of the process. */
+  signal(SIGPIPE, SIG_IGN);
+  signal(SIGXFSZ, SIG_IGN);
+}
+
+void command_signals_enter(recede_job *job) {
+  received = 0;
+  running = job;
+}
+
+int command_signals_leave(void) {
+  running = NULL;
+  return received;
+}
+
+/* ----------------------------------------------------------------------------------- input -- */
+
+static uint64_t picture_limit(const options *given) {
+  return given->memory_bytes ? given->memory_bytes : DEFAULT_PICTURE_BYTES;
+}
+
+command_exit command_open(const char *path, const options *given, image_file *file) {
+  image_message message;
+  image_codec_set_threads(given->threads > 64 ? 64 : given->threads);
+  image_status status = image_file_open(path, picture_limit(given), file, &message);
+  return status == IMAGE_OK ? EXIT_DONE : command_refuse_image(path, status, &message);
+}
+
+command_exit command_read(image_file *file) {
+  image_message message;
+  image_status status = image_file_read(file, &message);
+  return status == IMAGE_OK ? EXIT_DONE : command_refuse_image(file->path, status, &message);
+}
+
+command_exit command_read_mask(const char *path, const options *given, const image_file *picture,
+                               recede_view *mask) {
+  image_message message;
+  bool ambiguous;
+  image_status status =
+      image_file_read_mask(path, picture, picture_limit(given), mask, &ambiguous, &message);
+  if (status != IMAGE_OK) return command_refuse_image(path, status, &message);
+  if (ambiguous)
+    command_warn(given, path,
+                 "The picture is stored turned (Exif orientation) and the mask fits both ways: it "
+                 "was taken to lie on the stored rows.");
+  return EXIT_DONE;
+}
+
+/* ----------------------------------------------------------------------------------- a run -- */
+
+recede_job *command_job(const options *given) {
+  recede_host host;
+  recede_host_init(&host);
+  host.threads = given->threads;
+  host.memory_bytes = given->memory_bytes;
+  if (!given->quiet && isatty(STDERR_FILENO)) host.progress = command_progress;
+  recede_job *job = recede_job_new(&host);
+  if (!job) command_complain(NULL, "not enough memory");
+  return job;
+}
+
+static command_exit exit_for(recede_status status, const options *given) {
+  switch (status) {
+    case RECEDE_OK: return EXIT_DONE;
+    case RECEDE_ARGUMENT: return EXIT_USAGE;
+    case RECEDE_TOO_LARGE:
+    case RECEDE_NO_MEMORY: return EXIT_LIMIT;
+    case RECEDE_EMPTY_TARGET:
+    case RECEDE_EMPTY_SOURCE: return EXIT_INPUT;
+    case RECEDE_NO_PLANE: /* a horizon or a quad that is no plane is a value out of range */
+      return given->params.orientation == RECEDE_ORIENTATION_AUTO ? EXIT_FAILED : EXIT_USAGE;
+    default: return EXIT_FAILED;
+  }
+}
+
+command_exit command_finish(const recede_job *job, recede_status status, const options *given) {
+  command_progress_clear();
+  if (status != RECEDE_OK) command_complain(NULL, recede_job_message(job));
+  return exit_for(status, given);
+}
+
+/* ---------------------------------------------------------------------------------- output -- */
+
+static command_exit check_output(const char *path, const options *given) {
+  char message[300];
+  if (safe_file_check(path, given->force, message, sizeof message)) return EXIT_DONE;
+  command_complain(path, message);
+  return EXIT_OUTPUT;
+}
+
+command_exit command_check_outputs(const options *given) {
+  command_exit code = EXIT_DONE;
+  if (given->output) code = check_output(given->output, given);
+  if (code == EXIT_DONE && given->json && strcmp(given->json, "-") != 0)
+    code = check_output(given->json, given);
+  return code;
+}
+
+command_exit command_write(const options *given, const recede_view *result, const image_file *like,
+                           bool keep) {
+  image_message message;
+  char reason[300];
+  image_bytes bytes = {NULL, 0};
+  image_status status = image_file_encode(given->output, result, like, keep, &bytes, &message);
+  command_exit code = EXIT_DONE;
+  if (status != IMAGE_OK) {
+    code = command_refuse_image(given->output, status, &message);
+  } else {
+    command_warn(given, given->output, message.text);
+    if (!safe_file_write(given->output, bytes.data, bytes.size, given->force, reason,
+                         sizeof reason)) {
+      command_complain(given->output, reason);
+      code = EXIT_OUTPUT;
+    }
+  }
+  image_bytes_free(&bytes);
+  return code;
+}
+
+command_exit command_report(const options *given, const recede_report *report,
+                            const report_scale *scale) {
+  char message[300];
+  command_warn(given, NULL, report->warning);
+  if (!given->json) return EXIT_DONE;
+  if (report_write(given->json, given->force, report, scale, message, sizeof message))
+    return EXIT_DONE;
+  command_complain(given->json, message);
+  return EXIT_OUTPUT;
+}

@@ -1,0 +1,297 @@
+#include "image_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "metadata.h"
+#include "pixels.h"
+
+/* No compressor packs photographs, nor nearly anything, tighter than 2000:1 (deflate's own limit is
+ * 1032:1). A file that claims more, and much, is made to exhaust memory. */
+#define BOMB_RATIO 2000
+#define BOMB_BYTES ((uint64_t)64 << 20)
+
+static image_status fail(image_message *message, image_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static image_status fail(image_message *message, image_status status, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(message->text, sizeof message->text, format, arguments);
+  va_end(arguments);
+  return status;
+}
+
+/* ------------------------------------------------------------------------------------ read -- */
+
+static image_status read_all(int fd, image_bytes *bytes, image_message *message) {
+  size_t done = 0;
+  while (done < bytes->size) {
+    ssize_t got = read(fd, bytes->data + done, bytes->size - done);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return fail(message, IMAGE_MALFORMED, "%s", strerror(errno));
+    if (got == 0) break; /* it shrank meanwhile: what is left will tell */
+    done += (size_t)got;
+  }
+  bytes->size = done;
+  return IMAGE_OK;
+}
+
+static image_status load(const char *path, uint64_t limit, image_bytes *bytes,
+                         image_message *message) {
+  struct stat status;
+  int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0) return fail(message, IMAGE_MALFORMED, "%s", strerror(errno));
+  image_status result = IMAGE_OK;
+  if (fstat(fd, &status) != 0)
+    result = fail(message, IMAGE_MALFORMED, "%s", strerror(errno));
+  else if (S_ISDIR(status.st_mode))
+    result = fail(message, IMAGE_MALFORMED, "it is a folder");
+  else if (!S_ISREG(status.st_mode))
+    result = fail(message, IMAGE_MALFORMED, "it is no ordinary file");
+  else if (status.st_size == 0)
+    result = fail(message, IMAGE_MALFORMED, "it is empty");
+  else if ((uint64_t)status.st_size > limit)
+    result = fail(message, IMAGE_TOO_LARGE, "the file has %llu MiB, the limit is %llu MiB",
+                  (unsigned long long)status.st_size >> 20, (unsigned long long)limit >> 20);
+  if (result == IMAGE_OK) {
+    bytes->size = (size_t)status.st_size;
+    bytes->data = malloc(bytes->size);
+    result = bytes->data ? read_all(fd, bytes, message)
+                         : fail(message, IMAGE_NO_MEMORY, "not enough memory");
+  }
+  close(fd);
+  return result;
+}
+
+static image_status check_before_decoder(const image_file *file, image_message *message) {
+  const unsigned char *data = file->bytes.data;
+  if (!file->format)
+    return fail(message, IMAGE_MALFORMED, "it is no picture of a kind we read (%s)",
+                image_format_suffixes());
+  if (strcmp(file->format->codec, "jpeg") != 0) return IMAGE_OK;
+  if (image_format_jpeg_channels(data, file->bytes.size) == 4)
+    return fail(message, IMAGE_UNSUPPORTED, "its colours are CMYK; convert it to RGB first");
+  if (!image_format_whole(file->format, data, file->bytes.size))
+    return fail(message, IMAGE_MALFORMED, "the file is cut off: the JPEG's end is missing");
+  return IMAGE_OK;
+}
+
+static image_status check_size(const image_file *file, uint64_t limit, image_message *message) {
+  const image_info *info = &file->info;
+  uint64_t bytes = pixels_bytes(info->width, info->height, info->channels, info->type);
+  if (bytes > BOMB_BYTES && bytes / BOMB_RATIO > file->bytes.size)
+    return fail(message, IMAGE_MALFORMED,
+                "%llu bytes of file cannot hold the %d x %d px that it claims",
+                (unsigned long long)file->bytes.size, info->width, info->height);
+  if (bytes > limit)
+    return fail(message, IMAGE_TOO_LARGE,
+                "its %d x %d px take %llu MiB, the limit is %llu MiB (--memory raises it)",
+                info->width, info->height, (unsigned long long)(bytes >> 20) + 1,
+                (unsigned long long)limit >> 20);
+  return IMAGE_OK;
+}
+
+image_status image_file_open(const char *path, uint64_t limit, image_file *file,
+                             image_message *message) {
+  memset(file, 0, sizeof *file);
+  message->text[0] = '\0';
+  file->path = path;
+  image_status status = load(path, limit, &file->bytes, message);
+  if (status != IMAGE_OK) return status;
+  file->format = image_format_of_bytes(file->bytes.data, file->bytes.size, path);
+  status = check_before_decoder(file, message);
+  if (status != IMAGE_OK) return status;
+  status = image_decoder_new(file->format->codec, file->bytes.data, file->bytes.size,
+                             &file->decoder, &file->info, message);
+  if (status != IMAGE_OK) return status;
+  image_format_png_header(file->bytes.data, file->bytes.size, &file->info.stored_bits,
+                          &file->info.indexed);
+  status = check_size(file, limit, message);
+  bool swap = pixels_turn_swaps(file->info.orientation);
+  file->view = (recede_view){NULL,
+                             0,
+                             swap ? file->info.height : file->info.width,
+                             swap ? file->info.width : file->info.height,
+                             file->info.channels,
+                             file->info.type};
+  return status;
+}
+
+/* Stored rows into seen ones, in fresh memory. */
+static image_status turn_view(recede_view *view, int orientation, image_message *message) {
+  bool swap = pixels_turn_swaps(orientation);
+  if (orientation == 1) return IMAGE_OK;
+  recede_view turned = pixels_new(swap ? view->height : view->width,
+                                  swap ? view->width : view->height, view->channels, view->type);
+  if (!turned.data) return fail(message, IMAGE_NO_MEMORY, "not enough memory to turn it");
+  pixels_turn(view, orientation, &turned);
+  free(view->data);
+  *view = turned;
+  return IMAGE_OK;
+}
+
+static image_status read_stored(image_file *file, recede_view *stored, image_message *message) {
+  const image_info *info = &file->info;
+  *stored = pixels_new(info->width, info->height, info->channels, info->type);
+  if (!stored->data) return fail(message, IMAGE_NO_MEMORY, "not enough memory for its pixels");
+  return image_decoder_read(file->decoder, stored->data, message);
+}
+
+image_status image_file_read(image_file *file, image_message *message) {
+  image_status status = read_stored(file, &file->view, message);
+  return status == IMAGE_OK ? turn_view(&file->view, file->info.orientation, message) : status;
+}
+
+void image_file_close(image_file *file) {
+  image_decoder_free(&file->decoder);
+  image_bytes_free(&file->bytes);
+  free(file->view.data);
+  file->view.data = NULL;
+}
+
+/* ------------------------------------------------------------------------------------ mask -- */
+
+/* How the mask's stored rows must be turned to lie on the picture as seen; 0: it does not fit. */
+static int turn_of_mask(const image_file *mask, const image_file *picture, bool *ambiguous) {
+  const image_info *info = &mask->info;
+  bool seen = info->width == picture->view.width && info->height == picture->view.height;
+  bool stored = info->width == picture->info.width && info->height == picture->info.height;
+  *ambiguous = false;
+  if (info->orientation != 1) { /* it says itself how it is seen */
+    bool fits =
+        mask->view.width == picture->view.width && mask->view.height == picture->view.height;
+    return fits ? info->orientation : 0;
+  }
+  *ambiguous = seen && stored && picture->info.orientation != 1;
+  return stored ? picture->info.orientation : seen ? 1 : 0;
+}
+
+static image_status make_mask(image_file *file, const image_file *picture, recede_view *mask,
+                              bool *ambiguous, image_message *message) {
+  int bad_x, bad_y;
+  int turn = turn_of_mask(file, picture, ambiguous);
+  if (!turn)
+    return fail(message, IMAGE_MALFORMED, "it is %d x %d px, the picture %d x %d: they must agree",
+                file->view.width, file->view.height, picture->view.width, picture->view.height);
+  image_status status = read_stored(file, &file->view, message);
+  if (status != IMAGE_OK) return status;
+  *mask = pixels_new(file->info.width, file->info.height, 1,
+                     file->info.type == RECEDE_U8 ? RECEDE_U8 : RECEDE_FLOAT);
+  if (!mask->data) return fail(message, IMAGE_NO_MEMORY, "not enough memory for the mask");
+  if (!pixels_to_mask(&file->view, mask, &bad_x, &bad_y))
+    return fail(message, IMAGE_MALFORMED, "its pixel (%d, %d) is not a finite number", bad_x,
+                bad_y);
+  return turn_view(mask, turn, message);
+}
+
+image_status image_file_read_mask(const char *path, const image_file *picture, uint64_t limit,
+                                  recede_view *mask, bool *ambiguous, image_message *message) {
+  image_file file;
+  mask->data = NULL;
+  image_status status = image_file_open(path, limit, &file, message);
+  if (status == IMAGE_OK) status = make_mask(&file, picture, mask, ambiguous, message);
+  image_file_close(&file);
+  if (status == IMAGE_OK) return status;
+  free(mask->data);
+  mask->data = NULL;
+  return status;
+}
+
+/* ----------------------------------------------------------------------------------- write -- */
+
+static bool is_float(recede_type type) { return type == RECEDE_HALF || type == RECEDE_FLOAT; }
+static const char *type_name(recede_type type) {
+  static const char *const names[] = {"8-bit", "16-bit", "half", "float"};
+  return names[type];
+}
+
+/* The type it will be written in; false: whole numbers and floats do not mix. A float picture is
+ * usually linear light beyond 0..1, a whole-number one is not: exchanging them silently would
+ * change how everything looks. */
+static bool written_type(const image_format *format, recede_type type, recede_type *written) {
+  static const recede_type fallback[4] = {RECEDE_U16, RECEDE_U8, RECEDE_FLOAT, RECEDE_HALF};
+  *written = image_format_holds(format, type) ? type : fallback[type];
+  return image_format_holds(format, *written) && is_float(*written) == is_float(type);
+}
+
+static int written_channels(const image_format *format, int channels) {
+  if (format->channels & (1u << channels)) return channels;
+  int opaque = channels - (channels % 2 == 0);
+  if (format->channels & (1u << opaque)) return opaque;
+  return channels % 2 == 0 && (format->channels & (1u << 4)) ? 4 : 3;
+}
+
+bool image_file_can_write(const char *path, const image_file *like, recede_type type,
+                          image_message *message) {
+  const image_format *format = image_format_of_name(path);
+  recede_type written;
+  message->text[0] = '\0';
+  if (!format) {
+    fail(message, IMAGE_OUTPUT, "its suffix names no format we write (%s)",
+         image_format_suffixes());
+    return false;
+  }
+  if (!written_type(format, type, &written)) {
+    fail(message, IMAGE_OUTPUT, "%s cannot hold %s samples; use %s", format->name, type_name(type),
+         is_float(type) ? ".exr or .tif" : ".png or .tif");
+    return false;
+  }
+  if (written == RECEDE_U8 && type == RECEDE_U16)
+    fail(message, IMAGE_OK, "%s holds 8 bits: 16 were reduced to 8.", format->name);
+  if (like && like->info.several)
+    fail(message, IMAGE_OK, "The input holds several pictures: the first was used alone.");
+  else if (like && like->info.indexed)
+    fail(message, IMAGE_OK, "The palette was expanded: the output is RGB.");
+  return true;
+}
+
+/* In stored order, in a type and with channels that the format holds; data is fresh memory, or
+ * seen's own where nothing has to change. */
+static image_status storable(const image_format *format, const recede_view *seen, int orientation,
+                             recede_view *stored, image_message *message) {
+  recede_type type;
+  int channels = written_channels(format, seen->channels);
+  *stored = *seen;
+  if (!written_type(format, seen->type, &type))
+    return fail(message, IMAGE_OUTPUT, "%s cannot hold %s samples", format->name,
+                type_name(seen->type));
+  if (channels % 2 == 1 && seen->channels % 2 == 0 && !pixels_opaque(seen))
+    return fail(message, IMAGE_OUTPUT,
+                "%s has no transparency, which the picture has; use .png or .tif", format->name);
+  if (type != seen->type || channels != seen->channels) {
+    *stored = pixels_new(seen->width, seen->height, channels, type);
+    if (!stored->data) return fail(message, IMAGE_NO_MEMORY, "not enough memory to write");
+    pixels_convert(seen, stored);
+  }
+  if (orientation == 1) return IMAGE_OK;
+  bool swap = pixels_turn_swaps(orientation);
+  recede_view turned = pixels_new(swap ? seen->height : seen->width,
+                                  swap ? seen->width : seen->height, channels, type);
+  if (turned.data) pixels_turn(stored, pixels_turn_inverse(orientation), &turned);
+  if (stored->data != seen->data) free(stored->data);
+  *stored = turned;
+  return turned.data ? IMAGE_OK : fail(message, IMAGE_NO_MEMORY, "not enough memory to write");
+}
+
+image_status image_file_encode(const char *path, const recede_view *seen, const image_file *like,
+                               bool keep, image_bytes *bytes, image_message *message) {
+  const image_format *format = image_format_of_name(path);
+  recede_view stored = {0};
+  message->text[0] = '\0';
+  if (!format) return fail(message, IMAGE_OUTPUT, "its suffix names no format we write");
+  /* A format that cannot carry the tag gets the picture as it is seen. */
+  int orientation = keep && metadata_carries_orientation(format) ? like->info.orientation : 1;
+  image_status status = storable(format, seen, orientation, &stored, message);
+  if (status == IMAGE_OK)
+    status =
+        image_encode(&stored, format->codec, like ? like->decoder : NULL, keep, bytes, message);
+  if (status == IMAGE_OK && like) status = metadata_carry(like, format, keep, bytes, message);
+  if (stored.data != seen->data) free(stored.data);
+  return status;
+}

@@ -1,0 +1,48 @@
+/* image_file.h - pictures from and to files.
+ *
+ * A picture is handled as it is SEEN: stored rows are turned by the Exif orientation after reading
+ * and turned back before writing, so horizon, tilt and mask mean what the user sees, and the file
+ * keeps its layout and its tag. Colours that are stored premultiplied are divided by alpha for the
+ * core; stored pixels that are not filled are written back bit for bit.
+ */
+#ifndef RECEDE_IMAGE_FILE_H
+#define RECEDE_IMAGE_FILE_H
+
+#include "image_codec.h"
+#include "image_format.h"
+
+typedef struct image_file {
+  const char *path; /* the caller's */
+  const image_format *format;
+  image_bytes bytes; /* the file as it is */
+  image_decoder *decoder;
+  image_info info;  /* as stored */
+  recede_view view; /* as seen; data NULL before image_file_read() */
+} image_file;
+
+/* Reads the file's bytes and header. limit_bytes: of the decoded pixels. On any status but IMAGE_OK
+ * the message tells why, the file's name not included; close it in any case. */
+image_status image_file_open(const char *path, uint64_t limit_bytes, image_file *file,
+                             image_message *message);
+image_status image_file_read(image_file *file, image_message *message);
+void image_file_close(image_file *file);
+
+/* A mask, read as one channel in the picture's frame as seen: luminance times alpha. Its own Exif
+ * orientation is honoured; without one it may have the picture's seen or stored size. Where both
+ * fit (square pictures, turned by 180 degrees, mirrored) it is taken as stored, and *ambiguous is
+ * set. mask->data: free(). */
+image_status image_file_read_mask(const char *path, const image_file *picture, uint64_t limit_bytes,
+                                  recede_view *mask, bool *ambiguous, image_message *message);
+
+/* What the output's format would do to this picture. false: it cannot hold it, message says what to
+ * use; else message is "" or says what will be reduced. */
+bool image_file_can_write(const char *path, const image_file *like, recede_type type,
+                          image_message *message);
+
+/* Encodes a picture as seen. like: where metadata, orientation, compression come from; NULL: none.
+ * keep: it is the same picture, so Exif, XMP, IPTC and the turn of the stored rows stay; else only
+ * the colour profile and the resolution do. message: why not, or on IMAGE_OK "" or a warning. */
+image_status image_file_encode(const char *path, const recede_view *seen, const image_file *like,
+                               bool keep, image_bytes *bytes, image_message *message);
+
+#endif

@@ -1,0 +1,140 @@
+#include "image_format.h"
+
+#include <glib.h>
+#include <string.h>
+
+#define U8 (1u << RECEDE_U8)
+#define U16 (1u << RECEDE_U16)
+#define HALF (1u << RECEDE_HALF)
+#define FLOAT (1u << RECEDE_FLOAT)
+#define GRAY (1u << 1)
+#define GRAY_ALPHA (1u << 2)
+#define RGB (1u << 3)
+#define RGBA (1u << 4)
+#define ALL (GRAY | GRAY_ALPHA | RGB | RGBA)
+
+/* What the writers of OpenImageIO 2.4 were seen to keep bit for bit (JPEG, which cannot, apart). */
+static const image_format formats[] = {
+    {"PNG", "png", {"png"}, U8 | U16, ALL},
+    {"JPEG", "jpeg", {"jpg", "jpeg", "jpe"}, U8, GRAY | RGB},
+    {"TIFF", "tiff", {"tif", "tiff"}, U8 | U16 | FLOAT, ALL},
+    {"OpenEXR", "openexr", {"exr"}, HALF | FLOAT, ALL},
+    {"WebP", "webp", {"webp"}, U8, RGB | RGBA},
+    {"BMP", "bmp", {"bmp"}, U8, GRAY | RGB | RGBA},
+    {"Radiance HDR", "hdr", {"hdr"}, FLOAT, RGB},
+    {"PNM", "pnm", {"ppm", "pgm", "pnm"}, U8, GRAY | RGB},
+    {"Targa", "targa", {"tga"}, U8, ALL},
+};
+#define FORMATS (sizeof formats / sizeof *formats)
+enum { PNG, JPEG, TIFF, EXR, WEBP, BMP, HDR, PNM, TARGA };
+
+const char *image_format_suffixes(void) {
+  return ".png, .jpg, .tif, .exr, .webp, .bmp, .hdr, .ppm, .tga";
+}
+
+const image_format *image_format_of_name(const char *path) {
+  const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+  if (!dot || (slash && dot < slash)) return NULL;
+  for (size_t i = 0; i < FORMATS; i++)
+    for (size_t k = 0; k < 5 && formats[i].suffixes[k]; k++)
+      if (g_ascii_strcasecmp(dot + 1, formats[i].suffixes[k]) == 0) return &formats[i];
+  return NULL;
+}
+
+static bool starts(const unsigned char *bytes, size_t size, const char *mark, size_t length) {
+  return size >= length && memcmp(bytes, mark, length) == 0;
+}
+
+const image_format *image_format_of_bytes(const unsigned char *bytes, size_t size,
+                                          const char *path) {
+  static const struct {
+    const char *mark;
+    size_t length;
+    int format;
+  } marks[] = {
+      {"\x89PNG\r\n\x1a\n", 8, PNG},
+      {"\xff\xd8\xff", 3, JPEG},
+      {"II*\0", 4, TIFF},
+      {"MM\0*", 4, TIFF},
+      {"II+\0", 4, TIFF},
+      {"MM\0+", 4, TIFF},
+      {"\x76\x2f\x31\x01", 4, EXR},
+      {"BM", 2, BMP},
+      {"#?RADIANCE", 10, HDR},
+      {"#?RGBE", 6, HDR},
+      {"P1", 2, PNM},
+      {"P2", 2, PNM},
+      {"P3", 2, PNM},
+      {"P4", 2, PNM},
+      {"P5", 2, PNM},
+      {"P6", 2, PNM},
+      {"Pf", 2, PNM},
+      {"PF", 2, PNM},
+  };
+  for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
+    if (starts(bytes, size, marks[i].mark, marks[i].length)) return &formats[marks[i].format];
+  if (starts(bytes, size, "RIFF", 4) && size > 12 && memcmp(bytes + 8, "WEBP", 4) == 0)
+    return &formats[WEBP];
+  const image_format *named = image_format_of_name(path);
+  return named == &formats[TARGA] ? named : NULL;
+}
+
+bool image_format_holds(const image_format *format, recede_type type) {
+  return (format->types & (1u << type)) != 0;
+}
+
+static unsigned big16(const unsigned char *at) { return (unsigned)at[0] << 8 | at[1]; }
+
+/* Where the entropy-coded data that starts at `at` ends: the next marker that is no restart. */
+static size_t end_of_scan(const unsigned char *bytes, size_t size, size_t at) {
+  for (; at + 1 < size; at++) {
+    if (bytes[at] != 0xff || bytes[at + 1] == 0 || bytes[at + 1] == 0xff) continue;
+    if (bytes[at + 1] < 0xd0 || bytes[at + 1] > 0xd7) return at;
+  }
+  return size;
+}
+
+/* Walks a JPEG's segments. Returns whether its end was met; the channels of its frame in *channels.
+ */
+static bool walk_jpeg(const unsigned char *bytes, size_t size, int *channels) {
+  size_t at = 2;
+  *channels = 0;
+  while (at + 4 <= size || (at + 2 <= size && bytes[at + 1] == 0xd9)) {
+    unsigned marker = bytes[at + 1];
+    if (bytes[at] != 0xff) return false;
+    if (marker == 0xd9) return true;
+    if (marker == 0xff) { /* fill byte */
+      at++;
+      continue;
+    }
+    if (marker == 0x01 || (marker >= 0xd0 && marker <= 0xd7)) { /* without a length */
+      at += 2;
+      continue;
+    }
+    size_t length = big16(bytes + at + 2);
+    bool frame =
+        marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    if (frame && at + 10 <= size) *channels = bytes[at + 9];
+    at += 2 + length;
+    if (marker == 0xda) at = end_of_scan(bytes, size, at);
+  }
+  return false;
+}
+
+bool image_format_whole(const image_format *format, const unsigned char *bytes, size_t size) {
+  int channels;
+  return format != &formats[JPEG] || walk_jpeg(bytes, size, &channels);
+}
+
+int image_format_jpeg_channels(const unsigned char *bytes, size_t size) {
+  int channels;
+  walk_jpeg(bytes, size, &channels);
+  return channels;
+}
+
+bool image_format_png_header(const unsigned char *bytes, size_t size, int *bits, bool *indexed) {
+  if (size < 33 || image_format_of_bytes(bytes, size, "") != &formats[PNG]) return false;
+  *bits = bytes[24];
+  *indexed = bytes[25] == 3;
+  return true;
+}

@@ -1,0 +1,40 @@
+/* image_format.h - the formats of image files we read and write: how they are told apart and what
+ * each can hold. */
+#ifndef RECEDE_IMAGE_FORMAT_H
+#define RECEDE_IMAGE_FORMAT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "recede.h"
+
+typedef struct image_format {
+  const char *name;        /* as people write it */
+  const char *codec;       /* as OpenImageIO does */
+  const char *suffixes[5]; /* lower case; NULL ends */
+  unsigned types;          /* bit 1 << recede_type: written without loss of depth */
+  unsigned channels;       /* bit 1 << channels */
+} image_format;
+
+/* By the first bytes, whatever the file is called; only Targa, which has no mark of its own, by the
+ * name. NULL: none of ours. */
+const image_format *image_format_of_bytes(const unsigned char *bytes, size_t size,
+                                          const char *path);
+/* By the suffix of the name, in either case. NULL: none of ours. */
+const image_format *image_format_of_name(const char *path);
+/* ".png, .tif, ...": what may be given as a suffix. */
+const char *image_format_suffixes(void);
+
+bool image_format_holds(const image_format *format, recede_type type);
+
+/* false: the bytes are surely no whole file (a JPEG without its end, which decoders take for a
+ * picture with a gray lower half). */
+bool image_format_whole(const image_format *format, const unsigned char *bytes, size_t size);
+
+/* Colour channels as stored in a JPEG (4 is CMYK, whatever the decoder makes of it); 0: none said.
+ */
+int image_format_jpeg_channels(const unsigned char *bytes, size_t size);
+/* A PNG with a palette; its depth in *bits. */
+bool image_format_png_header(const unsigned char *bytes, size_t size, int *bits, bool *indexed);
+
+#endif
