@@ -3,14 +3,14 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-photo=docs/images/pier.jpg mask=docs/images/pier-mask.png folder=out/demo
+photo=docs/images/pier.jpg folder=out/demo
 result=$folder/pier-filled.png
 mkdir -p "$folder"
+set -x
+build/cli/recede fill $photo --mask docs/images/pier-mask.png --source docs/images/pier-planks.png \
+  --horizon 0,362,1200,362 -o $result --force --json $folder/report.json
+{ set +x; } 2>/dev/null
 echo
-echo "+ recede fill $photo --mask $mask -o $result"
-build/cli/recede fill "$photo" --mask "$mask" -o "$result" --force --json "$folder/report.json"
-echo
-echo "the photo:     $PWD/$photo"
-echo "the hole:      $PWD/$mask (white)"
-echo "the result:    $PWD/$result"
-echo "how it went:   $PWD/$folder/report.json"
+echo "the photo:   $PWD/$photo"
+echo "the hole:    $PWD/docs/images/pier-mask.png (white; planks are copied, water is not)"
+echo "the result:  $PWD/$result"
