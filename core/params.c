@@ -83,6 +83,8 @@ static const recede_param_info table[] = {
            RECEDE_PARAM_DEVELOPER),
     DOUBLE("paper-exponent", paper_exponent, "", "r of eq. 5", "", .1, 2, .8,
            RECEDE_PARAM_DEVELOPER),
+    INT("paper-iterations", paper_iterations, "", "of one sweep, at most; 0: by method", 0, 1000, 0,
+        RECEDE_PARAM_DEVELOPER),
     STAGE("engine-tone", engine_tone, "subtract the smooth brightness before the search"),
     STAGE("engine-periods", engine_periods, "candidates at the texture's periods"),
     STAGE("engine-coherence", engine_coherence, "a price on neighbours with other displacements"),

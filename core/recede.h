@@ -173,6 +173,7 @@ typedef struct recede_params {
   int paper_scale_in_pca;   /* -1: by paper_literal */
   double paper_histogram_gain; /* eq. 9's sum times this; -1: by paper_literal */
   double paper_exponent;    /* r of eq. 5 */
+  int paper_iterations;     /* of one sweep, at most; 0: by method */
   int engine_tone, engine_periods, engine_coherence, engine_confidence, engine_composition,
       engine_join, engine_detail, engine_spline; /* stages of the plane engine, 1 = on */
   int engine_iterations;    /* EM iterations at the coarsest level; 0: by quality */
