@@ -15,6 +15,8 @@ typedef struct ring {
   const rc_search *search;
   const int32_t *pixels; /* of this ring */
   int count;
+  const uint8_t *depth; /* of every pixel: its ring's number */
+  int number;
 } ring;
 
 typedef struct choice {
@@ -31,13 +33,14 @@ static void consider(const ring *r, choice *c, rc_copy copy) {
   c->best = copy;
 }
 
+/* Those of the rings before: the order within a ring must not matter. */
 static void consider_neighbours(const ring *r, choice *c, int x, int y) {
   const rc_level *level = r->level;
-  for (int dy = -1; dy <= 1; dy++)
-    for (int dx = -1; dx <= 1; dx++)
-      if (rc_inside(level->width, level->height, x + dx, y + dy) &&
-          rc_level_is_target(level, x + dx, y + dy))
-        consider(r, c, level->field[rc_level_at(level, x + dx, y + dy)]);
+  for (int ny = y - 1; ny <= y + 1; ny++)
+    for (int nx = x - 1; nx <= x + 1; nx++)
+      if (rc_inside(level->width, level->height, nx, ny) && rc_level_is_target(level, nx, ny) &&
+          r->depth[(size_t)ny * (size_t)level->width + (size_t)nx] < r->number)
+        consider(r, c, level->field[rc_level_at(level, nx, ny)]);
 }
 
 static void consider_chance(const ring *r, choice *c, int x, int y) {
@@ -139,7 +142,7 @@ recede_status rc_start(rc_context *context, rc_level *level, const rc_search *se
     if (depth[i]) level->weight[i] = 0;
   for (size_t i = 0; i < box; i++) level->field[i] = (rc_copy){NAN, NAN, NAN};
   for (int n = 1; n < 256; n++) {
-    ring r = {level, search, pixels + first[n], first[n + 1] - first[n]};
+    ring r = {level, search, pixels + first[n], first[n + 1] - first[n], depth, n};
     if (!r.count) continue;
     RC_TRY(rc_parallel(context, (r.count + PIXELS_PER_ITEM - 1) / PIXELS_PER_ITEM, choose_some, &r));
     show(&r, final_weight);
