@@ -1,0 +1,21 @@
+#!/bin/bash
+# Makes the README's before/after pictures with the command itself. Needs build/ and imagemagick.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# pair NAME CROP OPTION...: docs/images/NAME.jpg with its hole shown, beside its fill.
+pair() {
+  local images=docs/images name=$1 crop=$2
+  shift 2
+  build/cli/recede fill "$images/$name.jpg" --mask "$images/$name-mask.png" -o "$work/after.png" \
+    --force "$@"
+  convert "$images/$name.jpg" \( -clone 0 -fill '#ff2d95' -colorize 100 \) \
+    "$images/$name-mask.png" -composite "$work/before.png"
+  convert "$work/before.png" "$work/after.png" -crop "$crop" +repage -bordercolor white \
+    -border 4x0 +append -quality 88 -strip "$images/$name-before-after.jpg"
+}
+
+pair pier 620x400+290+390 --source docs/images/pier-planks.png --horizon 0,362,1200,362
+pair motorway 560x260+60+280 --horizon 0,302,960,302
