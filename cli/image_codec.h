@@ -32,11 +32,12 @@ typedef struct image_message {
 typedef struct image_info {
   int width, height, channels;
   recede_type type;
-  int orientation;    /* Exif 1..8: how the stored rows must be turned to be seen */
-  int stored_bits;    /* of a sample in the file: 1, 2, 4 are expanded to 8 */
-  bool premultiplied; /* colours are stored multiplied by alpha */
-  bool indexed;       /* a palette, expanded to RGB */
-  bool several;       /* the file holds more pictures than the first */
+  int orientation;     /* Exif 1..8: how the stored rows must be turned to be seen */
+  int stored_bits;     /* of a sample in the file: 1, 2, 4 are expanded to 8 */
+  double dpi_x, dpi_y; /* 0: unknown */
+  bool premultiplied;  /* colours are stored multiplied by alpha */
+  bool indexed;        /* a palette, expanded to RGB */
+  bool several;        /* the file holds more pictures than the first */
 } image_info;
 
 typedef struct image_decoder image_decoder;

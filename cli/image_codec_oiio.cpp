@@ -119,6 +119,17 @@ std::string objection(const ImageSpec &spec) {
   return std::string();
 }
 
+// Pixels per inch; 0: unknown. The unit is a word, or (from Exif in PNG) Exif's number.
+double dpi_of(const ImageSpec &spec, const char *axis) {
+  double value = spec.get_float_attribute(axis);
+  std::string unit(spec.get_string_attribute("ResolutionUnit"));
+  int number = spec.get_int_attribute("ResolutionUnit");
+  if (!(value > 0)) return 0;
+  if (unit == "cm" || number == 3) return value * 2.54;
+  if (unit == "m") return value * .0254;
+  return unit == "in" || number == 2 ? value : 0;
+}
+
 image_info describe(const ImageSpec &spec, const std::string &format) {
   image_info info = {};
   info.width = spec.width;
@@ -126,6 +137,8 @@ image_info describe(const ImageSpec &spec, const std::string &format) {
   info.channels = spec.nchannels;
   type_of(spec.format, &info.type);
   info.stored_bits = spec.get_int_attribute("oiio:BitsPerSample", int(spec.format.size()) * 8);
+  info.dpi_x = dpi_of(spec, "XResolution");
+  info.dpi_y = dpi_of(spec, "YResolution");
   info.orientation = spec.get_int_attribute("Orientation", 1);
   if (info.orientation < 1 || info.orientation > 8) info.orientation = 1;
   info.indexed = spec.get_int_attribute("tiff:PhotometricInterpretation", 2) == 3;
@@ -159,15 +172,11 @@ void take_exr_attributes(ImageSpec &spec, const ImageSpec &like) {
 }
 
 void take_resolution(ImageSpec &spec, const ImageSpec &like) {
-  float x = like.get_float_attribute("XResolution"), y = like.get_float_attribute("YResolution", x);
+  double x = dpi_of(like, "XResolution"), y = dpi_of(like, "YResolution");
   if (!(x > 0) || !(y > 0)) return;
-  spec.attribute("XResolution", x);
-  spec.attribute("YResolution", y);
-  // JPEG's reader says a word, PNG's for Exif in it the number of Exif: 2 inches, 3 centimetres.
-  std::string unit(like.get_string_attribute("ResolutionUnit"));
-  int number = like.get_int_attribute("ResolutionUnit");
-  if (unit == "in" || number == 2) spec.attribute("ResolutionUnit", "in");
-  if (unit == "cm" || number == 3) spec.attribute("ResolutionUnit", "cm");
+  spec.attribute("XResolution", float(x));
+  spec.attribute("YResolution", float(y));
+  spec.attribute("ResolutionUnit", "in");
 }
 
 // The profile's bytes alone: its fields, which the readers add, would be written as texts.
@@ -198,12 +207,19 @@ ImageSpec spec_for(const recede_view *view, const std::string &format, const ima
     if (format == "openexr") spec.channelnames = like->spec.channelnames;
     compression = like->spec.get_string_attribute("compression");
   }
-  if (like) take_resolution(spec, like->spec);
+  if (like && !(keep && format == "openexr" && like->format == format))
+    take_resolution(spec, like->spec);
+  if (like && keep) // JPEG and PNG get it within Exif
+    if (format == "tiff" || format == "openexr")
+      spec.attribute("Orientation", like->spec.get_int_attribute("Orientation", 1));
   if (like && format != "openexr") take_profile(spec, like->spec); // EXR has no place for it
   // EXR's alpha is by definition associated; the values are passed as they are.
   if (format != "openexr") spec.attribute("oiio:UnassociatedAlpha", 1);
   if (!lossless(format, compression)) compression = "zip";
   if (format == "tiff" || format == "openexr") spec.attribute("compression", compression);
+  // Without a date OpenEXR's writer puts today's: two runs would differ. It leaves out what is no
+  // text.
+  if (format == "openexr" && !spec.find_attribute("DateTime")) spec.attribute("DateTime", 1);
   if (format == "jpeg") take_jpeg_settings(spec, like ? &like->spec : nullptr);
   if (format == "webp") spec.attribute("compression", "lossless");
   return spec;
@@ -303,9 +319,9 @@ extern "C" image_status image_encode(const recede_view *view, const char *format
     bool good = output->write_image(format_of(view->type), view->data, AutoStride,
                                     stride_t(view->stride_bytes), AutoStride);
     good = output->close() && good;
-    std::string error = error_of(output.get(), "");
-    if (!good || !error.empty())
-      return fail(message, IMAGE_OUTPUT, error.empty() ? "the encoder failed" : error);
+    // Only the return values count: TIFF's writer leaves an error even when all went well.
+    std::string error = error_of(output.get(), "the encoder failed");
+    if (!good) return fail(message, IMAGE_OUTPUT, error);
     return copy_out(memory.buffer(), bytes, message);
   });
 }

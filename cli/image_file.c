@@ -286,7 +286,7 @@ image_status image_file_encode(const char *path, const recede_view *seen, const 
   message->text[0] = '\0';
   if (!format) return fail(message, IMAGE_OUTPUT, "its suffix names no format we write");
   /* A format that cannot carry the tag gets the picture as it is seen. */
-  int orientation = keep && metadata_carries_orientation(format) ? like->info.orientation : 1;
+  int orientation = keep && metadata_carries_orientation(like, format) ? like->info.orientation : 1;
   image_status status = storable(format, seen, orientation, &stored, message);
   if (status == IMAGE_OK)
     status =

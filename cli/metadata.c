@@ -1,11 +1,89 @@
 #include "metadata.h"
 
-bool metadata_carries_orientation(const image_format *format) {
-  (void)format;
-  return false;
+#include <string.h>
+
+#include "metadata_parts.h"
+
+GByteArray *metadata_copy(const uint8_t *bytes, size_t size) {
+  GByteArray *copy = g_byte_array_new();
+  g_byte_array_append(copy, bytes, (guint)size);
+  return copy;
 }
+
+/* A resource: "8BIM", number, name (a counted string, padded to even), length, data (padded). */
+GByteArray *metadata_clean_iptc(const uint8_t *bytes, size_t size) {
+  GByteArray *clean = g_byte_array_new();
+  for (size_t at = 0; at + 12 <= size && memcmp(bytes + at, "8BIM", 4) == 0;) {
+    unsigned number = (unsigned)bytes[at + 4] << 8 | bytes[at + 5];
+    size_t name = ((size_t)bytes[at + 6] + 2) & ~(size_t)1, data = at + 6 + name + 4;
+    if (data > size) break;
+    const uint8_t *length = bytes + data - 4;
+    size_t count =
+        (size_t)length[0] << 24 | (size_t)length[1] << 16 | (size_t)length[2] << 8 | length[3];
+    if (count > size - data) break;
+    size_t end = MIN(data + ((count + 1) & ~(size_t)1), size);
+    if (number != 1033 && number != 1036) g_byte_array_append(clean, bytes + at, (guint)(end - at));
+    at = end;
+  }
+  return clean;
+}
+
+static void clear(metadata_parts *parts) {
+  GByteArray **all[] = {&parts->exif, &parts->xmp, &parts->iptc, &parts->chunks, &parts->comment};
+  for (size_t i = 0; i < G_N_ELEMENTS(all); i++)
+    if (*all[i]) g_byte_array_unref(*all[i]);
+}
+
+static metadata_parts parts_of(const image_file *from) {
+  metadata_parts parts = {NULL, NULL, NULL, NULL, NULL, from->info.dpi_x, from->info.dpi_y};
+  const char *kind = from->format->codec;
+  const uint8_t *bytes = from->bytes.data;
+  if (strcmp(kind, "jpeg") == 0) metadata_from_jpeg(bytes, from->bytes.size, &parts);
+  if (strcmp(kind, "png") == 0) metadata_from_png(bytes, from->bytes.size, &parts);
+  if (strcmp(kind, "tiff") == 0) metadata_from_tiff(bytes, from->bytes.size, &parts);
+  return parts;
+}
+
+/* Where the tag has a place. JPEG and PNG take it within an Exif block, which must be there. */
+bool metadata_carries_orientation(const image_file *from, const image_format *format) {
+  if (strcmp(format->codec, "tiff") == 0 || strcmp(format->codec, "openexr") == 0) return true;
+  if (strcmp(format->codec, "jpeg") != 0 && strcmp(format->codec, "png") != 0) return false;
+  metadata_parts parts = parts_of(from);
+  bool has_block = parts.exif != NULL;
+  clear(&parts);
+  return has_block;
+}
+
+/* Another picture: its profile was written by the encoder, its resolution is all that is left; from
+ * PNG to PNG the profile's chunks stay too. */
+static void drop_what_described_the_picture(metadata_parts *parts, bool png) {
+  GByteArray **all[] = {&parts->exif, &parts->xmp, &parts->iptc, &parts->comment, &parts->chunks};
+  for (size_t i = 0; i < (png ? 4 : 5); i++) {
+    if (*all[i]) g_byte_array_unref(*all[i]);
+    *all[i] = NULL;
+  }
+}
+
 image_status metadata_carry(const image_file *from, const image_format *format, bool keep,
                             image_bytes *bytes, image_message *message) {
-  (void)from, (void)format, (void)keep, (void)bytes, (void)message;
+  bool lost = false;
+  GByteArray *made = NULL;
+  bool png = strcmp(format->codec, "png") == 0;
+  metadata_parts parts = parts_of(from);
+  if (!keep) drop_what_described_the_picture(&parts, png);
+  if (png) made = metadata_into_png(bytes->data, bytes->size, &parts, &lost);
+  if (strcmp(format->codec, "jpeg") == 0)
+    made = metadata_into_jpeg(bytes->data, bytes->size, &parts, &lost);
+  if (strcmp(format->codec, "tiff") == 0)
+    made = metadata_into_tiff(bytes->data, bytes->size, &parts, &lost);
+  if (!made) lost = parts.exif || parts.xmp || parts.iptc;
+  clear(&parts);
+  if (lost)
+    g_snprintf(message->text, sizeof message->text, "Not all of the input's metadata fits in %s.",
+               format->name);
+  if (!made) return IMAGE_OK;
+  image_bytes_free(bytes);
+  bytes->size = made->len;
+  bytes->data = g_byte_array_free(made, FALSE);
   return IMAGE_OK;
 }

@@ -5,7 +5,7 @@
 #include "image_file.h"
 
 /* Whether a picture in this format keeps its stored rows and its Exif orientation. */
-bool metadata_carries_orientation(const image_format *format);
+bool metadata_carries_orientation(const image_file *from, const image_format *format);
 
 /* Puts Exif, XMP, IPTC, texts and the resolution of `from` into the bytes of an encoded picture.
  * keep: see image_file_encode(). */

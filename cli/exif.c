@@ -1,0 +1,245 @@
+#include "exif.h"
+
+#include <string.h>
+
+enum { POINTER_EXIF = 0x8769, POINTER_GPS = 0x8825, POINTER_INTEROP = 0xa005 };
+enum { THUMBNAIL_OFFSET = 0x201, THUMBNAIL_LENGTH = 0x202, STRIP_OFFSETS = 273, STRIP_BYTES = 279 };
+
+static const uint8_t type_sizes[] = {0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4};
+
+static size_t type_size(unsigned type) { return type < sizeof type_sizes ? type_sizes[type] : 0; }
+
+/* ------------------------------------------------------------------------------------ read -- */
+
+typedef struct source {
+  const uint8_t *bytes;
+  size_t size;
+  bool big;
+} source;
+
+static uint16_t get16(bool big, const uint8_t *at) {
+  return (uint16_t)(big ? at[0] << 8 | at[1] : at[1] << 8 | at[0]);
+}
+static uint32_t get32(bool big, const uint8_t *at) {
+  return big ? (uint32_t)get16(big, at) << 16 | get16(big, at + 2)
+             : (uint32_t)get16(big, at + 2) << 16 | get16(big, at);
+}
+
+static bool open_source(const uint8_t *bytes, size_t size, source *from) {
+  if (size < 8 || (memcmp(bytes, "II*\0", 4) != 0 && memcmp(bytes, "MM\0*", 4) != 0)) return false;
+  *from = (source){bytes, size, bytes[0] == 'M'};
+  return true;
+}
+
+/* Entries of the folder at an offset; 0: it does not lie within the bytes. */
+static unsigned folder_size(const source *from, size_t offset) {
+  if (offset < 8 || offset + 2 > from->size) return 0;
+  unsigned count = get16(from->big, from->bytes + offset);
+  return offset + 2 + (size_t)count * 12 <= from->size ? count : 0;
+}
+
+static bool read_entry(const source *from, const uint8_t *at, exif_entry *entry) {
+  entry->tag = get16(from->big, at);
+  entry->type = get16(from->big, at + 2);
+  entry->count = get32(from->big, at + 4);
+  entry->size = type_size(entry->type) * (size_t)entry->count;
+  entry->value = at + 8;
+  if (entry->size == 0) return false;
+  if (entry->size <= 4) return true;
+  size_t offset = get32(from->big, at + 8);
+  entry->value = from->bytes + offset;
+  return offset <= from->size && entry->size <= from->size - offset;
+}
+
+static bool is_pointer(uint16_t tag, exif_folder *folder) {
+  *folder = tag == POINTER_EXIF ? EXIF_EXIF : tag == POINTER_GPS ? EXIF_GPS : EXIF_INTEROP;
+  return tag == POINTER_EXIF || tag == POINTER_GPS || tag == POINTER_INTEROP;
+}
+
+/* The depth is bounded by the kinds of folder, so pointers in a circle end. */
+static void read_folder(const source *from, exif_folder folder, size_t offset, exif_tree *tree) {
+  unsigned count = folder_size(from, offset);
+  for (unsigned i = 0; i < count; i++) {
+    exif_entry entry = {.folder = folder};
+    exif_folder below;
+    if (!read_entry(from, from->bytes + offset + 2 + (size_t)i * 12, &entry)) continue;
+    if (!is_pointer(entry.tag, &below))
+      g_array_append_val(tree->entries, entry);
+    else if (below > folder && entry.size == 4)
+      read_folder(from, below, get32(from->big, entry.value), tree);
+  }
+}
+
+bool exif_read(const uint8_t *bytes, size_t size, exif_tree *tree) {
+  source from;
+  tree->entries = g_array_new(FALSE, FALSE, sizeof(exif_entry));
+  tree->big_endian = false;
+  if (!open_source(bytes, size, &from)) return false;
+  tree->big_endian = from.big;
+  read_folder(&from, EXIF_MAIN, get32(from.big, bytes + 4), tree);
+  return true;
+}
+
+void exif_clear(exif_tree *tree) { g_array_unref(tree->entries); }
+
+const exif_entry *exif_find(const exif_tree *tree, exif_folder folder, uint16_t tag) {
+  for (guint i = 0; i < tree->entries->len; i++) {
+    const exif_entry *entry = &g_array_index(tree->entries, exif_entry, i);
+    if (entry->folder == folder && entry->tag == tag) return entry;
+  }
+  return NULL;
+}
+
+void exif_remove(exif_tree *tree, exif_folder folder, uint16_t tag) {
+  for (guint i = tree->entries->len; i-- > 0;) {
+    const exif_entry *entry = &g_array_index(tree->entries, exif_entry, i);
+    if (entry->folder == folder && entry->tag == tag) g_array_remove_index(tree->entries, i);
+  }
+}
+
+void exif_remove_structure(exif_tree *tree) {
+  static const uint16_t ranges[][2] = {{254, 259}, {262, 266},     {273, 273},     {277, 281},
+                                       {284, 284}, {288, 293},     {301, 301},     {317, 317},
+                                       {320, 325}, {330, 332},     {334, 347},     {512, 532},
+                                       {559, 559}, {33421, 33422}, {34675, 34675}, {50674, 50674}};
+  for (guint i = tree->entries->len; i-- > 0;) {
+    const exif_entry *entry = &g_array_index(tree->entries, exif_entry, i);
+    bool structure = false;
+    for (size_t k = 0; k < G_N_ELEMENTS(ranges); k++)
+      structure |= entry->tag >= ranges[k][0] && entry->tag <= ranges[k][1];
+    if (structure && entry->folder == EXIF_MAIN) g_array_remove_index(tree->entries, i);
+  }
+}
+
+/* ----------------------------------------------------------------------------------- write -- */
+
+static void put16(GByteArray *to, unsigned value) {
+  uint8_t bytes[2] = {(uint8_t)value, (uint8_t)(value >> 8)};
+  g_byte_array_append(to, bytes, 2);
+}
+static void put32(GByteArray *to, uint32_t value) {
+  put16(to, value & 0xffff);
+  put16(to, value >> 16);
+}
+static void patch32(GByteArray *to, guint at, uint32_t value) {
+  for (int i = 0; i < 4; i++) to->data[at + (guint)i] = (uint8_t)(value >> 8 * i);
+}
+
+static void put_value(GByteArray *to, const exif_entry *entry, bool big) {
+  /* Rationals are two numbers. */
+  size_t unit = entry->type == 5 || entry->type == 10 ? 4 : type_size(entry->type);
+  guint at = to->len;
+  g_byte_array_append(to, entry->value, (guint)entry->size);
+  if (!big || unit == 1) return;
+  for (size_t i = 0; i + unit <= entry->size; i += unit)
+    for (size_t k = 0; k < unit; k++) to->data[at + i + k] = entry->value[i + unit - 1 - k];
+}
+
+typedef struct merged {
+  const exif_entry *entry; /* NULL: a pointer to a folder below */
+  bool big;
+  uint16_t tag;
+} merged;
+
+static gint by_tag(gconstpointer a, gconstpointer b) {
+  return (int)((const merged *)a)->tag - (int)((const merged *)b)->tag;
+}
+
+static void take(const exif_tree *tree, exif_folder folder, GArray *all) {
+  for (guint i = 0; i < tree->entries->len; i++) {
+    const exif_entry *entry = &g_array_index(tree->entries, exif_entry, i);
+    bool there = entry->folder != folder;
+    for (guint k = 0; k < all->len && !there; k++)
+      there = g_array_index(all, merged, k).tag == entry->tag;
+    merged one = {entry, tree->big_endian, entry->tag};
+    if (!there) g_array_append_val(all, one);
+  }
+}
+
+static bool has(const exif_tree *first, const exif_tree *second, exif_folder folder) {
+  const exif_tree *trees[2] = {first, second};
+  for (int t = 0; t < 2; t++)
+    for (guint i = 0; trees[t] && i < trees[t]->entries->len; i++)
+      if (g_array_index(trees[t]->entries, exif_entry, i).folder == folder) return true;
+  return false;
+}
+
+static void add_pointer(GArray *all, uint16_t tag) {
+  merged one = {NULL, false, tag};
+  g_array_append_val(all, one);
+}
+
+static uint32_t append_folder(const exif_tree *first, const exif_tree *second, exif_folder folder,
+                              GByteArray *to, guint start) {
+  GArray *all = g_array_new(FALSE, FALSE, sizeof(merged));
+  take(first, folder, all);
+  if (second) take(second, folder, all);
+  if (folder == EXIF_MAIN && has(first, second, EXIF_EXIF)) add_pointer(all, POINTER_EXIF);
+  if (folder == EXIF_MAIN && has(first, second, EXIF_GPS)) add_pointer(all, POINTER_GPS);
+  if (folder == EXIF_EXIF && has(first, second, EXIF_INTEROP)) add_pointer(all, POINTER_INTEROP);
+  g_array_sort(all, by_tag);
+  while ((to->len - start) % 2) g_byte_array_append(to, (const guint8 *)"", 1);
+  guint at = to->len;
+  put16(to, all->len);
+  g_byte_array_set_size(to, at + 2 + 12 * all->len + 4);
+  memset(to->data + at + 2, 0, 12 * all->len + 4);
+  for (guint i = 0; i < all->len; i++) {
+    const merged *one = &g_array_index(all, merged, i);
+    exif_folder below;
+    GByteArray *head = g_byte_array_new();
+    put16(head, one->tag);
+    put16(head, one->entry ? one->entry->type : 4);
+    put32(head, one->entry ? one->entry->count : 1);
+    if (!one->entry) {
+      is_pointer(one->tag, &below);
+      put32(head, append_folder(first, second, below, to, start));
+    } else if (one->entry->size <= 4) {
+      put_value(head, one->entry, one->big);
+    } else {
+      while ((to->len - start) % 2) g_byte_array_append(to, (const guint8 *)"", 1);
+      put32(head, to->len - start);
+      put_value(to, one->entry, one->big);
+    }
+    memcpy(to->data + at + 2 + 12 * i, head->data, head->len);
+    g_byte_array_unref(head);
+  }
+  g_array_unref(all);
+  return at - start;
+}
+
+uint32_t exif_append(const exif_tree *first, const exif_tree *second, GByteArray *to, guint start) {
+  uint32_t offset = append_folder(first, second, EXIF_MAIN, to, start);
+  patch32(to, start + 4, offset);
+  return offset;
+}
+
+/* ------------------------------------------------------------------------------- thumbnail -- */
+
+static void blank_range(uint8_t *bytes, size_t size, size_t offset, size_t length) {
+  if (offset >= 8 && offset < size) memset(bytes + offset, 0, MIN(length, size - offset));
+}
+
+static size_t number_of(const source *from, const exif_entry *entry) {
+  return entry->type == 3 ? get16(from->big, entry->value) : get32(from->big, entry->value);
+}
+
+void exif_blank_thumbnail(uint8_t *bytes, size_t size) {
+  source from;
+  if (!open_source(bytes, size, &from)) return;
+  size_t main = get32(from.big, bytes + 4);
+  unsigned count = folder_size(&from, main);
+  size_t next = main + 2 + (size_t)count * 12;
+  if (count == 0 || next + 4 > size) return;
+  size_t second = get32(from.big, bytes + next), offset = 0, length = 0;
+  count = folder_size(&from, second);
+  for (unsigned i = 0; i < count; i++) {
+    exif_entry entry;
+    if (!read_entry(&from, bytes + second + 2 + (size_t)i * 12, &entry) || entry.size > 4) continue;
+    if (entry.tag == THUMBNAIL_OFFSET || entry.tag == STRIP_OFFSETS)
+      offset = number_of(&from, &entry);
+    if (entry.tag == THUMBNAIL_LENGTH || entry.tag == STRIP_BYTES)
+      length = number_of(&from, &entry);
+  }
+  blank_range(bytes, size, offset, length);
+  memset(bytes + next, 0, 4);
+}
