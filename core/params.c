@@ -41,7 +41,7 @@ static const char *const quality_labels[] = {N_("Draft"), N_("Normal"), N_("Best
 #define STAGE(key, field, help) INT(key, field, "", help, 0, 1, 1, RECEDE_PARAM_DEVELOPER)
 
 static const recede_param_info table[] = {
-    CHOICE("orientation", orientation, N_("_Orientation"),
+    CHOICE("orientation", orientation, N_("Orientat_ion"),
            N_("Where the orientation of the plane comes from"), 0, orientations, orientation_labels,
            COMMON),
     DOUBLE("slant", slant_deg, N_("Sla_nt"),

@@ -6,7 +6,7 @@
 #include "intl.h"
 
 static const char *const result_nicks[] = {"in-place", "new-layer", NULL};
-static const char *const result_labels[] = {N_("In place"), N_("New layer"), NULL};
+static const char *const result_labels[] = {N_("This layer"), N_("A new layer above it"), NULL};
 
 /* A picture's orientation as a line or four points has no place among a procedure's arguments: the
  * dialog's handles turn them into angles. */
@@ -19,7 +19,7 @@ static const rp_argument height_row = {
     NULL,     NULL};
 static const rp_argument source_row = {
     "source",
-    N_("So_urce"),
+    N_("Cop_y from"),
     N_("Where to copy from: the light parts of a channel or layer; none: everywhere outside the "
        "selection"),
     "",
@@ -31,7 +31,7 @@ static const rp_argument source_row = {
     NULL};
 static const rp_argument result_row = {
     "result",
-    N_("Resu_lt"),
+    N_("_Put into"),
     N_("Whether the fill goes into the layer or into a new one above it"),
     "",
     RP_CHOICE,
@@ -85,7 +85,7 @@ const char *rp_procedure_name(rp_procedure procedure) {
 }
 
 const char *rp_procedure_label(rp_procedure procedure) {
-  return procedure == RP_FILL ? N_("_Perspective Fill...") : N_("Perspective _Texture...");
+  return procedure == RP_FILL ? N_("_Perspective Fill…") : N_("Perspective _Texture…");
 }
 
 const char *rp_procedure_blurb(rp_procedure procedure) {

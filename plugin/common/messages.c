@@ -15,8 +15,8 @@ const char *rp_target_refusal(const rp_target *target, gboolean writes, gboolean
   if (target->floating)
     return _("A floating selection cannot be filled. Anchor it first: Layer > Anchor Layer.");
   if (new_layer && !target->is_layer)
-    return _("A channel or layer mask can only be filled in place. Choose the result In place, or "
-             "select a layer.");
+    return _("A channel or layer mask can only be filled in place: put the fill into it, not into "
+             "a new layer.");
   if (!writes || new_layer) return NULL;
   if (target->text)
     return _("This is a text layer. Choose Layer > Discard Text Information first, or fill into a "
@@ -78,6 +78,9 @@ char *rp_failure(const rp_request *request) {
   }
 }
 
+/* A few magnified pixels in a hundred are never seen. */
+#define WORTH_TELLING 50
+
 static void add_sentence(GString *text, char *sentence) {
   if (text->len) g_string_append_c(text, ' ');
   g_string_append(text, sentence);
@@ -95,7 +98,7 @@ char *rp_warning(const rp_request *request) {
     add_sentence(text, g_strdup_printf(_("%.0f selected pixels lie beyond the horizon and were "
                                          "left as they are."),
                                        (double)report->refused_pixels));
-  if (report->magnified_pixels > 0)
+  if (report->magnified_pixels * WORTH_TELLING > report->filled_pixels)
     add_sentence(text,
                  g_strdup_printf(_("%.0f pixels had to be magnified (up to %.1f times), for "
                                    "lack of nearer texture; they may look soft."),

@@ -1,0 +1,198 @@
+#!/usr/bin/env python3
+"""Fills in a real GIMP, every kind of pixels and selection, checked byte by byte.
+
+pixels.py HOST PLUGIN COMMAND: HOST is 2 or 3; COMMAND the command recede, or "" where it is not built.
+"""
+import subprocess
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+import xcf
+from host import Host, Tap
+
+WIDTH, HEIGHT = 96, 72
+MODES = {"rgb": (False, False), "rgba": (False, True), "gray": (True, False), "graya": (True, True)}
+PRECISIONS = ["u8", "u8-linear", "u16", "u16-linear", "u32-linear", "half-linear", "float",
+              "float-linear", "double-linear"]
+# Script-Fu that selects in image i, the layer being d.
+RECTANGLE = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE 40 24 28 20)"
+SELECTIONS = {
+    "rectangle": RECTANGLE,
+    "feathered": RECTANGLE + "(gimp-selection-feather i 8)",
+    "disjoint": RECTANGLE + "(gimp-image-select-ellipse i CHANNEL-OP-ADD 12 40 14 14)",
+    "border": "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE 0 30 20 60)",
+}
+OFFSET = (7, -5)
+
+
+def picture(path, alpha, seed=3):
+    """A 16-bit picture: bricks with noise; alpha: the top left corner transparent, a fading edge."""
+    random = np.random.default_rng(seed)
+    y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
+    joint = (y % 8 < 1) | ((x + 8 * (y // 8 % 2)) % 16 < 1)
+    base = np.where(joint[..., None], [.75, .72, .7], [.3, .36, .62])
+    colour = np.clip(base + random.normal(0, .03, (HEIGHT, WIDTH, 3)), 0, 1)
+    if alpha:
+        opacity = np.clip((x + y) / 30. - .3, 0, 1)
+        colour = np.dstack([colour, opacity])
+    cv2.imwrite(str(path), np.round(colour * 65535).astype(np.uint16))
+
+
+def script_of(host, case, source, out):
+    mode, precision, selection, offset, extra = case
+    gray, _ = MODES[mode]
+    lines = [f'(define i (t-load "{source}"))', "(define d (t-layer i))"]
+    if gray:
+        lines.append("(gimp-image-convert-grayscale i)")
+    if precision != "u16":  # it is that already, and GIMP refuses
+        lines.append(f"(gimp-image-convert-precision i {host.precision(precision)})")
+    if offset:
+        lines.append(f"(gimp-layer-set-offsets d {offset[0]} {offset[1]})")
+    lines.append(extra.get("before", ""))
+    lines += [SELECTIONS[selection], "(define c (car (gimp-selection-save i)))",
+              "(t-select-layer i d)", f'(t-save i "{out}-before.xcf")']
+    lines.append(host.fill(**{"orientation": "angles", "slant": 35, **extra.get("fill", {})}))
+    lines += [f'(t-save i "{out}-after.xcf")', "(gimp-image-delete i)"]
+    return "\n".join(lines)
+
+
+def mask_over(layer, channel):
+    """The selection's values over a layer, zero where the selection does not reach."""
+    mask = np.zeros((layer.height, layer.width))
+    x, y = layer.offsets
+    values = channel.values[..., 0] / (channel.values.max() or 1)
+    x0, y0 = max(x, 0), max(y, 0)
+    x1, y1 = min(x + layer.width, channel.width), min(y + layer.height, channel.height)
+    mask[y0 - y : y1 - y, x0 - x : x1 - x] = values[y0:y1, x0:x1]
+    return mask
+
+
+def faults(before, after, mask):
+    """What is wrong with a fill, as sentences."""
+    outside, inside = mask == 0, mask == mask.max()
+    if not np.array_equal(before.bytes[outside], after.bytes[outside]):
+        changed = (before.bytes[outside] != after.bytes[outside]).any(-1).sum()
+        yield f"{changed} pixels outside the selection changed"
+    if not np.isfinite(after.values).all():
+        yield "not finite"
+    changed = (before.bytes[inside] != after.bytes[inside]).any(-1).mean()
+    if changed < .5:
+        yield f"only {changed:.0%} of the selected pixels changed"
+    colours = before.values.shape[2] // 3 * 3 or 1
+    full = 65535 if after.values.max() > 255 else 255 if after.values.max() > 1.5 else 1
+    known = before.values[outside][..., :colours].reshape(-1, colours)
+    filled = after.values[inside][..., :colours].reshape(-1, colours)
+    if len(filled) and np.abs(filled.mean(0) - known.mean(0)).max() > .25 * max(known.max(), full / 9):
+        yield f"mean {filled.mean(0)}, around it {known.mean(0)}"
+    if before.values.shape[2] in (2, 4):
+        opaque = after.values[inside][..., -1]
+        if opaque.min() < opaque.max() * .999 or opaque.max() < before.values[..., -1].max() * .999:
+            yield "filled pixels are not opaque"
+
+
+def cases():
+    """(mode, precision, selection, offset, extra): all modes in all precisions, then the rest."""
+    kinds = list(SELECTIONS)
+    number = 0
+    for mode in MODES:
+        for precision in PRECISIONS:
+            offset = OFFSET if number % 3 == 1 else None
+            yield mode, precision, kinds[number % len(kinds)], offset, {}
+            number += 1
+    for kind in kinds:
+        yield "rgb", "u8", kind, OFFSET, {}
+        yield "rgba", "u16", kind, None, {}
+
+
+def check_table(host, tap, folder):
+    todo = list(cases())
+    for alpha in (False, True):
+        picture(folder / f"picture-{alpha:d}.png", alpha)
+    script = [script_of(host, case, folder / f"picture-{MODES[case[0]][1]:d}.png", folder / str(n))
+              for n, case in enumerate(todo)]
+    output = host.run(*script, seconds=150)
+    tap.case(host.done, "the table's script came to its end", output)
+    for number, case in enumerate(todo):
+        name = f"{case[0]} {case[1]} {case[2]}" + (" offset" if case[3] else "")
+        if not (folder / f"{number}-after.xcf").exists():
+            tap.case(False, name, "no result")
+            continue
+        before = xcf.Image(folder / f"{number}-before.xcf")
+        after = xcf.Image(folder / f"{number}-after.xcf")
+        mask = mask_over(before.layers[0], before.channels[0])
+        wrong = list(faults(before.layers[0], after.layers[0], mask))
+        tap.case(not wrong, name, "\n".join(wrong))
+
+
+def check_new_layer(host, tap, folder):
+    """The new layer laid over the old one looks like the fill in place."""
+    todo = [("rgb", "u8", "feathered", OFFSET), ("graya", "u16", "disjoint", None),
+            ("rgb", "float", "rectangle", None)]
+    script = [script_of(host, (*case, {"fill": {"result": "new-layer"}}),
+                        folder / f"picture-{MODES[case[0]][1]:d}.png", folder / f"new-{n}")
+              for n, case in enumerate(todo)]
+    output = host.run(*script)
+    for number, case in enumerate(todo):
+        name = "new layer, " + " ".join(case[:3])
+        if not (folder / f"new-{number}-after.xcf").exists():
+            tap.case(False, name, output)
+            continue
+        before = xcf.Image(folder / f"new-{number}-before.xcf")
+        after = xcf.Image(folder / f"new-{number}-after.xcf")
+        mask = mask_over(before.layers[0], before.channels[0])
+        rows, columns = np.nonzero(mask)
+        top, bottom = after.layers[0], after.layers[-1]
+        alpha = top.values[..., -1] / {2: 65535, 1: 255, 6: 1}[after.precision // 100]
+        where = tuple(np.subtract(top.offsets, bottom.offsets))
+        box = mask[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
+        tap.case(len(after.layers) == len(before.layers) + 1
+                 and np.array_equal(before.layers[0].bytes, bottom.bytes)
+                 and where == (columns.min(), rows.min()) and alpha.shape == box.shape
+                 and np.abs(alpha - box).max() < .005, name,
+                 f"layers {len(after.layers)}, at {where}, shape {alpha.shape} {box.shape}")
+
+
+def check_same_as_command(host, tap, folder, command):
+    """The same seed gives the command's pixels on the same file."""
+    for bits, kind in ((8, "rectangle"), (8, "feathered"), (16, "disjoint")):
+        name = f"the command's pixels, {bits} bits, {kind}"
+        if not command:
+            tap.case(True, name + " # SKIP the command is not built")
+            continue
+        stem = folder / f"same-{bits}-{kind}"
+        image = cv2.imread(str(folder / "picture-0.png"), -1)
+        cv2.imwrite(f"{stem}.png", image if bits == 16 else (image / 257).round().astype(np.uint8))
+        output = host.run(
+            f'(define i (t-load "{stem}.png"))', "(define d (t-layer i))", SELECTIONS[kind],
+            "(define c (car (gimp-selection-save i)))", "(t-select-layer i d)",
+            host.fill(orientation="angles", slant=35, tilt=10, seed=7, surface="flat"),
+            f'(t-save i "{stem}.xcf")')
+        if not host.done:
+            tap.case(False, name, output)
+            continue
+        after = xcf.Image(f"{stem}.xcf")
+        cv2.imwrite(f"{stem}-mask.png", after.channels[0].values[..., 0].astype(
+            np.uint8 if after.channels[0].bytes.shape[2] == 1 else np.uint16))
+        run = subprocess.run(
+            [command, "fill", f"{stem}.png", "--mask", f"{stem}-mask.png", "-o", f"{stem}-out.png",
+             "--slant", "35", "--tilt", "10", "--seed", "7", "--surface", "flat"],
+            capture_output=True, text=True, check=False)
+        theirs = cv2.imread(f"{stem}-out.png", -1)
+        ours = after.layers[0].values[..., ::-1]
+        tap.case(theirs is not None and np.array_equal(theirs, ours), name, run.stderr if
+                 theirs is None else f"{(theirs != ours).any(-1).sum()} pixels differ")
+
+
+def main():
+    name, plugin, command = sys.argv[1:4]
+    tap = Tap()
+    with Host(name, plugin) as host:
+        check_table(host, tap, host.folder)
+        check_new_layer(host, tap, host.folder)
+        check_same_as_command(host, tap, host.folder, command and Path(command).resolve())
+    tap.plan()
+
+
+main()
