@@ -15,7 +15,7 @@
 
 #define MAX_LEVELS 10
 /* The coarsest hole is at least this far across: one level too many breaks regular patterns. */
-#define COARSEST_HOLE_PX 30
+#define COARSEST_HOLE_PX 18
 /* Each px deeper in the hole counts 1.3 times less; 1.15 is too trusting. */
 #define CONFIDENCE_FALLOFF 1.3f
 #define COHERENCE .01f
