@@ -3,21 +3,49 @@
 #include <math.h>
 #include <string.h>
 
-void rc_query_set(const rc_level *level, int x, int y, rc_query *query) {
-  rc_patch *patch = &query->patch;
+/* Away from the border all lanes lie in the picture. */
+static int32_t unpack_inside(const rc_level *level, size_t at, rc_patch *patch) {
+  const uint32_t *pixels = level->pixels + at;
+  const uint8_t *weights = level->weight + at;
+  int32_t sum = 0;
+  for (int chunk = 0; chunk < RC_PATCH_LANES; chunk += RC_PATCH_CHUNK)
+    for (int i = chunk; i < chunk + RC_PATCH_PIXELS / 3; i++) {
+      uint32_t pixel = pixels[level->lane_offset[i]];
+      patch->red[i] = (int16_t)(pixel & 255);
+      patch->green[i] = (int16_t)(pixel >> 8 & 255);
+      patch->blue[i] = (int16_t)(pixel >> 16 & 255);
+      patch->weight[i] = weights[level->lane_offset[i]];
+      sum += patch->weight[i];
+    }
+  return sum;
+}
+
+static int32_t unpack_at_border(const rc_level *level, int x, int y, rc_patch *patch) {
   int32_t sum = 0;
   for (int i = 0; i < RC_PATCH_LANES; i++) {
     int px = x + rc_lane_x[i], py = y + rc_lane_y[i];
-    bool there = i % RC_PATCH_CHUNK < RC_PATCH_PIXELS / 3 &&
-                 rc_inside(level->width, level->height, px, py);
-    size_t at = there ? (size_t)py * (size_t)level->width + (size_t)px : 0;
+    patch->red[i] = patch->green[i] = patch->blue[i] = patch->weight[i] = 0;
+    if (i % RC_PATCH_CHUNK >= RC_PATCH_PIXELS / 3 || !rc_inside(level->width, level->height, px, py))
+      continue;
+    size_t at = (size_t)py * (size_t)level->width + (size_t)px;
     uint32_t pixel = level->pixels[at];
     patch->red[i] = (int16_t)(pixel & 255);
     patch->green[i] = (int16_t)(pixel >> 8 & 255);
     patch->blue[i] = (int16_t)(pixel >> 16 & 255);
-    patch->weight[i] = there ? level->weight[at] : 0;
+    patch->weight[i] = level->weight[at];
     sum += patch->weight[i];
   }
+  return sum;
+}
+
+void rc_query_init(rc_query *query) { memset(query, 0, sizeof *query); }
+
+void rc_query_set(const rc_level *level, int x, int y, rc_query *query) {
+  bool inside = x >= RC_PATCH_RADIUS && y >= RC_PATCH_RADIUS &&
+                x < level->width - RC_PATCH_RADIUS && y < level->height - RC_PATCH_RADIUS;
+  int32_t sum =
+      inside ? unpack_inside(level, (size_t)y * (size_t)level->width + (size_t)x, &query->patch)
+             : unpack_at_border(level, x, y, &query->patch);
   query->per_weight = sum ? 1.f / (3.f * (float)sum) : 0.f;
   query->x = rc_level_x(level, x);
   query->y = rc_level_y(level, y);

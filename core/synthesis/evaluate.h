@@ -23,6 +23,8 @@ typedef struct rc_query {
   float low, high;  /* ratios allowed here */
 } rc_query;
 
+/* Once per query, before the first set: the padding lanes must weigh nothing. */
+void rc_query_init(rc_query *query);
 void rc_query_set(const rc_level *level, int x, int y, rc_query *query);
 /* Cost of the copy there, or any value >= limit (RC_NO_COST when it is not allowed: wrong scale, or
  * its footprint is not wholly source). */

@@ -9,6 +9,7 @@
 #include "image/tone.h"
 #include "synthesis/compose.h"
 #include "synthesis/detail.h"
+#include "synthesis/periods.h"
 #include "synthesis/problem.h"
 #include "synthesis/start.h"
 #include "synthesis/vote.h"
@@ -20,6 +21,7 @@
 #define CONFIDENCE_FALLOFF 1.3f
 #define COHERENCE .01f
 #define COHERENCE_OF_COMPOSITION .02f
+#define PERIOD_TRIES 3
 #define TONE_SIGMA_OF_LONGEST (1.f / 14)
 /* Bytes span this many standard deviations to each side. */
 #define DEVIATIONS 4.f
@@ -43,6 +45,8 @@ typedef struct engine {
   int level_count;
   rc_image images[MAX_LEVELS];
   rc_mask flags[MAX_LEVELS];
+  rc_copy periods[RC_MOST_PERIODS]; /* px of the coarsest level */
+  int period_count;
 } engine;
 
 static rc_chart chart_of(const rc_problem *problem, bool raised) {
@@ -122,7 +126,10 @@ static recede_status run_level(rc_context *context, const engine *e, int exponen
                           .recost = pass == 0,
                           .coherence = e->params->engine_coherence ? COHERENCE : 0.f,
                           .local_radius = e->effort.local_radius,
-                          .anywhere = coarsest ? e->effort.anywhere : 0};
+                          .anywhere = coarsest ? e->effort.anywhere : 0,
+                          .periods = e->periods,
+                          .period_count = coarsest ? e->period_count : 0,
+                          .period_tries = PERIOD_TRIES};
       RC_TRY(rc_search_pass(context, level, &search, old));
     }
     RC_TRY(rc_progress(context, (double)(i + 1) / iterations));
@@ -138,14 +145,19 @@ static recede_status run_level(rc_context *context, const engine *e, int exponen
   return RECEDE_OK;
 }
 
-static recede_status start_coarsest(rc_context *context, const engine *e, rc_level *level) {
+static recede_status start_coarsest(rc_context *context, engine *e, rc_level *level) {
+  uint64_t key = rc_key((uint64_t)e->params->seed, 99, 0);
+  if (e->params->engine_periods)
+    RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count));
   rc_search search = {.kernels = e->kernels,
-                      .key = rc_key((uint64_t)e->params->seed, 99, 0),
+                      .key = key,
+                      .periods = e->periods,
+                      .period_count = e->period_count,
                       .anywhere = e->effort.start_tries};
   return rc_start(context, level, &search);
 }
 
-static recede_status search_levels(rc_context *context, const engine *e, rc_level *finest) {
+static recede_status search_levels(rc_context *context, engine *e, rc_level *finest) {
   rc_level coarser, level;
   float gamma = e->params->engine_confidence ? CONFIDENCE_FALLOFF : 1.f;
   for (int exponent = e->level_count - 1; exponent >= 0; exponent--) {

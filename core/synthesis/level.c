@@ -205,6 +205,8 @@ recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_
   rc_distance_inside(level->flags, RC_SOURCE, level->width, level->height, true, level->room);
   set_weights(level, gamma);
   find_box(level);
+  for (int i = 0; i < RC_PATCH_LANES; i++)
+    level->lane_offset[i] = rc_lane_y[i] * level->width + rc_lane_x[i];
   set_variance(level);
   size_t box = (size_t)level->box_w * (size_t)level->box_h;
   RC_TRY(RC_NEW(context, box, &level->field));

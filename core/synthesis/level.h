@@ -33,6 +33,7 @@ typedef struct rc_level {
   rc_copy *field;   /* box_w * box_h, row by row; NAN a = none yet */
   float *cost;      /* of the field's copies without the price of incoherence */
   uint8_t *classes; /* class of each box pixel */
+  int32_t lane_offset[RC_PATCH_LANES]; /* of each lane of a patch, in pixels */
   rc_ranges ranges;
   float variance; /* of known pixels, byte^2, mean over channels */
   /* Sources sorted by w: indices of pixels, bin b at order[first[b]] .. order[first[b + 1]]. */

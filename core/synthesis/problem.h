@@ -22,8 +22,8 @@ typedef struct rc_problem {
   int origin_x, origin_y; /* of image in the whole picture */
 } rc_problem;
 
-/* Each fills the TARGET pixels of *filled (allocated by the caller, a copy of problem->image) and
- * leaves the others; progress runs over 0.05..0.97 of the run. */
+/* Each fills the TARGET pixels of *filled, which starts as problem->image (for method plane it IS
+ * problem->image, whose other pixels are then overwritten); progress runs over 0.05..0.97. */
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                             const recede_params *params, rc_image *filled);
 /* Methods paper and kwatra: params->method says which. */

@@ -6,10 +6,10 @@
 #include "base/memory.h"
 #include "image/view.h"
 
-/* A patch needs about this much around the hole whatever its size. */
-#define LEAST_MARGIN_PX 48
-/* Margin in hole sizes: the nearest texture of the same scale lies beside the hole. */
-#define MARGIN_OF_HOLE 2.0
+/* The margin around a hole: small ones need several texels, whatever their size; large ones hold many
+ * themselves. */
+#define LEAST_MARGIN_PX 300
+#define MARGIN_OF_HOLE .5
 /* Target pixels with less than this part of the nearest target pixel's w are not on the plane: a
  * texel there is a hundredth of a px per px of the nearest. */
 #define LEAST_W_OF_TARGET .01

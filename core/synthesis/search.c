@@ -149,6 +149,7 @@ static void scan_tile(void *user, int item, int thread) {
   tile.y0 = tile.y0 < level->box.y0 ? level->box.y0 : tile.y0;
   int width = tile.x1 - tile.x0, count = width * (tile.y1 - tile.y0);
   pixel_state state;
+  rc_query_init(&state.query);
   state.price = s->search->coherence * level->variance;
   for (int k = 0; k < count; k++) {
     int i = s->search->pass & 1 ? count - 1 - k : k;

@@ -80,6 +80,7 @@ static void choose(const ring *r, int32_t pixel) {
   rc_level *level = r->level;
   int x = pixel % level->width, y = pixel / level->width;
   choice c = {.best = {NAN, NAN, NAN}, .cost = RC_NO_COST};
+  rc_query_init(&c.query);
   rc_query_set(level, x, y, &c.query);
   consider_neighbours(r, &c, x, y);
   consider_periods(r, &c);
