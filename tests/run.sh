@@ -10,12 +10,13 @@ project=$PWD # used by common.sh too
 
 logs=$project/out/test-logs # one folder for the whole run, emptied at its start
 names=()
-fast=0 sanitize=0 ci=0
+fast=0 sanitize='' ci=0
 
 for argument; do
   case $argument in
     --fast) fast=1 ;;
-    --sanitize) sanitize=1 ;;
+    --sanitize) sanitize=sanitize ;;
+    --sanitize-threads) sanitize=threads ;;
     --ci) ci=1 ;;
     -*)
       echo "test: no such option: $argument" >&2
@@ -66,18 +67,21 @@ native() {
   fi
 }
 
+# sanitized KIND: the tests of core and command under sanitizers, in a build folder of their own.
 sanitized() {
-  step configure-sanitize configure build-sanitize -Db_sanitize=address,undefined \
-    -Db_lundef=false -Dbuildtype=debugoptimized -Db_ndebug=false \
-    -Dgimp2=disabled -Dgimp3=disabled || return
-  step compile-sanitize ninja -C build-sanitize || return
+  local label=$1 folder=build-$1 sanitizers=address,undefined
+  [ "$label" = threads ] && sanitizers=thread
+  step "configure-$label" configure "$folder" "-Db_sanitize=$sanitizers" -Db_lundef=false \
+    -Dbuildtype=debugoptimized -Db_ndebug=false -Dgimp2=disabled -Dgimp3=disabled || return
+  step "compile-$label" ninja -C "$folder" || return
   export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
   export LSAN_OPTIONS=suppressions=$project/tests/house/lsan.supp:print_suppressions=0
+  export TSAN_OPTIONS=suppressions=$project/tests/house/tsan.supp:print_suppressions=0
   local selection=(--no-suite house --no-suite quality)
-  [ $fast = 1 ] && selection=(--suite fast)
+  [ $fast = 1 ] && selection=(--suite fast --no-suite house)
   [ ${#names[@]} -gt 0 ] && selection=("${names[@]}")
-  meson_test sanitize "" build-sanitize --timeout-multiplier 6 "${selection[@]}"
+  meson_test "$label" "" "$folder" --timeout-multiplier 6 "${selection[@]}"
 }
 
 gimp3() {
@@ -98,11 +102,11 @@ mkdir -p "$logs"
 groups=(build)
 [ $fast = 1 ] || groups+=(plugin test)
 step packages install_packages "${groups[@]}"
-if [ $sanitize = 1 ]; then
-  sanitized
+if [ -n "$sanitize" ]; then
+  sanitized "$sanitize"
 else
   native
   if [ $fast = 0 ] && [ ${#names[@]} = 0 ] && [ -e plugin/gimp3 ]; then gimp3; fi
-  if [ $ci = 1 ]; then sanitized; fi
+  if [ $ci = 1 ]; then sanitized sanitize; fi
 fi
 /usr/bin/python3 tests/lib/summary.py "$logs"
