@@ -3,13 +3,13 @@
 Peers run with the defaults that their users get and see the whole picture; they have no way to be
 told the plane or the source. Their results do not change, so they are cached.
 """
+import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
-import threading
-import time
 
 from evaluation import CACHE, digest
 
@@ -53,29 +53,42 @@ cv2.imwrite(sys.argv[3], out)
 '''
 
 
+# Between us and the program: a child's peak memory begins with what its parent held at the fork,
+# and we hold pictures.
+LAUNCHER = '''
+import json, os, sys, time
+began = time.monotonic()
+program = os.posix_spawnp(sys.argv[2], sys.argv[2:], os.environ)
+_, status, used = os.wait4(program, 0)
+with open(sys.argv[1], "w") as file:
+    json.dump({"cpu": used.ru_utime + used.ru_stime, "wall": time.monotonic() - began,
+               "rss_bytes": used.ru_maxrss * 1024}, file)
+sys.exit(os.waitstatus_to_exitcode(status))
+'''
+
+
 class Failed(Exception):
     """A method gave no result; says why."""
 
 
 def run(command, timeout_seconds=TIMEOUT_SECONDS):
     """Runs it; {'cpu', 'wall'} in seconds and 'rss_bytes'. Failed with its last words."""
-    began = time.monotonic()
-    with tempfile.TemporaryFile() as words:
-        process = subprocess.Popen([str(part) for part in command], stdin=subprocess.DEVNULL,
-                                   stdout=words, stderr=subprocess.STDOUT)
-        timer = threading.Timer(timeout_seconds, process.kill)
-        timer.start()
-        _, status, usage = os.wait4(process.pid, 0)
-        timer.cancel()
-        process.returncode = os.waitstatus_to_exitcode(status)
+    with tempfile.TemporaryFile() as words, tempfile.NamedTemporaryFile() as usage:
+        launcher = [sys.executable, '-I', '-S', '-c', LAUNCHER, usage.name]
+        process = subprocess.Popen(launcher + [str(part) for part in command],
+                                   stdin=subprocess.DEVNULL, stdout=words,
+                                   stderr=subprocess.STDOUT, start_new_session=True)
+        try:
+            process.wait(timeout_seconds)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+            raise Failed(f'no result after {timeout_seconds} s') from None
         words.seek(0)
         said = words.read().decode(errors='replace').strip().splitlines()
-    wall = time.monotonic() - began
-    if process.returncode != 0:
-        late = f' after {timeout_seconds} s' if wall >= timeout_seconds else ''
-        raise Failed(f'exit {process.returncode}{late}: {said[-1] if said else "nothing said"}')
-    return {'cpu': usage.ru_utime + usage.ru_stime, 'wall': wall,
-            'rss_bytes': usage.ru_maxrss * 1024}
+        if process.returncode != 0:
+            raise Failed(f'exit {process.returncode}: {said[-1] if said else "nothing said"}')
+        return json.loads(usage.read())
 
 
 def gmic_command(method, image, mask, out):
