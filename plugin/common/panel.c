@@ -1,0 +1,347 @@
+/* The part of the dialog that both hosts share. */
+#include "panel.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "background.h"
+#include "intl.h"
+#include "preview.h"
+#include "procedure.h"
+
+#define PROXY_LONGEST_PX 720
+#define DRAFT_AFTER_MS 250 /* after the last change */
+#define SHOWS 3
+
+struct rp_panel {
+  rp_host *host;
+  rp_settings *settings;
+  rp_picture *picture;
+  rp_set_func set;
+  gpointer user;
+  rp_scene scene;
+  rp_background estimate, draft;
+  guchar *draft_pixels;
+  guint draft_timer;
+  gboolean setting;   /* the panel itself is moving the controls */
+  gboolean cancelled; /* of the run */
+  GtkWidget *box, *area, *row, *shows[SHOWS], *estimate_button, *status, *progress;
+};
+
+static void say(rp_panel *panel, const char *text) {
+  gtk_label_set_text(GTK_LABEL(panel->status), text ? text : "");
+}
+
+static int choice(const rp_panel *panel, const char *key) {
+  return (int)rp_settings_get(panel->settings, key);
+}
+
+/* ------------------------------------------------------------------------------------ draft -- */
+
+static void on_draft(gpointer user, const rp_request *request) {
+  rp_panel *panel = user;
+  if (request->status == RECEDE_OK) {
+    rp_scene_set_draft(&panel->scene, panel->draft_pixels);
+    say(panel, _("Draft: the real fill at the preview's size."));
+  } else {
+    char *text = rp_failure(request);
+    say(panel, text);
+    g_free(text);
+  }
+  gtk_widget_queue_draw(panel->area);
+}
+
+static recede_view proxy_view(const rp_proxy *proxy, guchar *pixels, int channels) {
+  return (recede_view){
+      pixels, (gsize)(proxy->width * channels), proxy->width, proxy->height, channels, RECEDE_U8};
+}
+
+/* Estimated angles are shown by the sliders, so the draft takes them from there. */
+static gboolean draft_params(const rp_panel *panel, recede_params *params) {
+  char *message = NULL;
+  gboolean good = rp_settings_params(panel->settings, params, &message);
+  g_free(message);
+  if (params->orientation == RECEDE_ORIENTATION_AUTO)
+    params->orientation = RECEDE_ORIENTATION_ANGLES;
+  params->quality = RECEDE_QUALITY_DRAFT;
+  return good;
+}
+
+static gboolean start_draft(gpointer data) {
+  rp_panel *panel = data;
+  rp_proxy *proxy = &panel->scene.proxy;
+  rp_request request = {.run = RP_RUN_FILL, .threads = rp_host_threads()};
+  panel->draft_timer = 0;
+  if (panel->scene.show != RP_SHOW_DRAFT || !draft_params(panel, &request.params))
+    return G_SOURCE_REMOVE;
+  request.image = proxy_view(proxy, proxy->rgba, 4);
+  request.mask = proxy_view(proxy, proxy->mask, 1);
+  if (proxy->source) request.source = proxy_view(proxy, proxy->source, 1);
+  rp_background_stop(&panel->draft);
+  if (!panel->draft_pixels)
+    panel->draft_pixels = g_malloc((gsize)proxy->width * (gsize)proxy->height * 4);
+  request.result = proxy_view(proxy, panel->draft_pixels, 4);
+  say(panel, _("Making a draft…"));
+  rp_background_start(&panel->draft, &request);
+  return G_SOURCE_REMOVE;
+}
+
+static void stop_draft(rp_panel *panel) {
+  if (panel->draft_timer) g_source_remove(panel->draft_timer);
+  panel->draft_timer = 0;
+  rp_background_stop(&panel->draft);
+}
+
+static void renew_draft(rp_panel *panel) {
+  stop_draft(panel);
+  rp_scene_set_draft(&panel->scene, NULL);
+  if (panel->scene.show == RP_SHOW_DRAFT)
+    panel->draft_timer = g_timeout_add(DRAFT_AFTER_MS, start_draft, panel);
+}
+
+/* --------------------------------------------------------------------------------- estimate -- */
+
+static void set_values(rp_panel *panel, double slant_deg, double tilt_deg) {
+  panel->setting = TRUE;
+  panel->set(panel->user, "slant", slant_deg);
+  panel->set(panel->user, "tilt", tilt_deg);
+  panel->setting = FALSE;
+}
+
+static void show_plane(rp_panel *panel) {
+  gboolean frontal = choice(panel, "orientation") == RECEDE_ORIENTATION_FRONTAL;
+  rp_scene_set_angles(&panel->scene, frontal ? 0 : rp_settings_get(panel->settings, "slant"),
+                      frontal ? 0 : rp_settings_get(panel->settings, "tilt"),
+                      rp_settings_get(panel->settings, "fov"));
+  renew_draft(panel);
+  gtk_widget_queue_draw(panel->area);
+}
+
+static void on_estimate(gpointer user, const rp_request *request) {
+  rp_panel *panel = user;
+  gtk_widget_set_sensitive(panel->estimate_button, TRUE);
+  if (request->status != RECEDE_OK || request->orientation.confidence < RECEDE_CONFIDENCE_LOW) {
+    say(panel, _("The orientation could not be read from the picture with confidence. Drag the "
+                 "horizon or the grid until the squares lie on the ground."));
+    return;
+  }
+  char *text = g_strdup_printf(_("Read from the picture with a confidence of %.0f %%. Look whether "
+                                 "the squares lie on the ground; drag them if not."),
+                               100 * request->orientation.confidence);
+  set_values(panel, round(request->orientation.slant_deg * 10) / 10,
+             round(request->orientation.tilt_deg * 10) / 10);
+  say(panel, text);
+  show_plane(panel);
+  g_free(text);
+}
+
+static void start_estimate(rp_panel *panel) {
+  char *message = NULL;
+  rp_request request = {.run = RP_RUN_ORIENT, .threads = rp_host_threads()};
+  if (!rp_settings_params(panel->settings, &request.params, &message)) {
+    g_free(message);
+    return;
+  }
+  request.params.orientation = RECEDE_ORIENTATION_AUTO;
+  request.image = panel->picture->image.view;
+  request.mask = panel->picture->mask.view;
+  request.source = panel->picture->source.view;
+  if (panel->settings->procedure == RP_SYNTHESIZE) {
+    request.source = request.mask;
+    request.mask.data = NULL;
+  }
+  gtk_widget_set_sensitive(panel->estimate_button, FALSE);
+  say(panel, _("Reading the orientation…"));
+  rp_background_start(&panel->estimate, &request);
+}
+
+static void on_estimate_clicked(GtkButton *button, gpointer user) {
+  rp_panel *panel = user;
+  (void)button;
+  panel->setting = TRUE;
+  panel->set(panel->user, "orientation", RECEDE_ORIENTATION_AUTO);
+  panel->setting = FALSE;
+  start_estimate(panel);
+}
+
+/* ---------------------------------------------------------------------------------- changes -- */
+
+/* Whoever sets an angle by hand means it. */
+static void take_angles(rp_panel *panel) {
+  if (choice(panel, "orientation") == RECEDE_ORIENTATION_ANGLES) return;
+  rp_background_stop(&panel->estimate);
+  gtk_widget_set_sensitive(panel->estimate_button, TRUE);
+  panel->setting = TRUE;
+  panel->set(panel->user, "orientation", RECEDE_ORIENTATION_ANGLES);
+  panel->setting = FALSE;
+  say(panel, NULL);
+}
+
+static void on_dragged(gpointer user, double slant_deg, double tilt_deg) {
+  rp_panel *panel = user;
+  take_angles(panel);
+  set_values(panel, slant_deg, tilt_deg);
+  show_plane(panel);
+}
+
+static void take_source(rp_panel *panel) {
+  char *message = NULL;
+  int id = choice(panel, "source");
+  stop_draft(panel);
+  rp_background_stop(&panel->estimate);
+  rp_pixels_clear(&panel->picture->source);
+  if (id >= 0 && !rp_host_read_source(panel->host, id, panel->picture, &message))
+    say(panel, message);
+  rp_scene_set_source(&panel->scene, panel->picture);
+  g_free(message);
+}
+
+void rp_panel_changed(rp_panel *panel, const char *key) {
+  if (panel->setting) return;
+  if (strcmp(key, "slant") == 0 || strcmp(key, "tilt") == 0) take_angles(panel);
+  if (strcmp(key, "source") == 0) take_source(panel);
+  if (strcmp(key, "orientation") == 0 && choice(panel, key) == RECEDE_ORIENTATION_AUTO)
+    start_estimate(panel);
+  show_plane(panel);
+}
+
+static void on_show(GtkToggleButton *button, gpointer user) {
+  rp_panel *panel = user;
+  if (!gtk_toggle_button_get_active(button)) return;
+  for (int i = 0; i < SHOWS; i++)
+    if (panel->shows[i] == GTK_WIDGET(button)) panel->scene.show = (rp_show)i;
+  panel->scene.shade_is_old = TRUE;
+  if (panel->scene.show == RP_SHOW_SCALE)
+    say(panel, _("Blue: the texture gets smaller; orange: larger than in the selection; red: it "
+                 "would have to be magnified; grey: beyond the horizon."));
+  else if (!panel->scene.draft)
+    renew_draft(panel);
+  gtk_widget_queue_draw(panel->area);
+}
+
+/* ---------------------------------------------------------------------------------- widgets -- */
+
+static GtkWidget *show_row(rp_panel *panel) {
+  static const char *const labels[SHOWS] = {N_("Grid"), N_("Scale map"), N_("Draft result")};
+  GtkWidget *row = rp_ui_box(GTK_ORIENTATION_HORIZONTAL, 6);
+  GSList *group = NULL;
+  int shows = panel->settings->procedure == RP_FILL ? SHOWS : RP_SHOW_DRAFT;
+  for (int i = 0; i < shows; i++) {
+    panel->shows[i] = gtk_radio_button_new_with_label(group, _(labels[i]));
+    group = gtk_radio_button_get_group(GTK_RADIO_BUTTON(panel->shows[i]));
+    g_signal_connect(panel->shows[i], "toggled", G_CALLBACK(on_show), panel);
+    gtk_box_pack_start(GTK_BOX(row), panel->shows[i], FALSE, FALSE, 0);
+  }
+  panel->estimate_button = gtk_button_new_with_mnemonic(_("_Estimate"));
+  gtk_widget_set_tooltip_text(panel->estimate_button, _("Read slant and tilt from the picture"));
+  g_signal_connect(panel->estimate_button, "clicked", G_CALLBACK(on_estimate_clicked), panel);
+  gtk_box_pack_end(GTK_BOX(row), panel->estimate_button, FALSE, FALSE, 0);
+  return row;
+}
+
+/* Two lines are kept free for it, so that nothing jumps. */
+static GtkWidget *status_line(rp_panel *panel) {
+  panel->status = gtk_label_new("\n");
+  gtk_label_set_line_wrap(GTK_LABEL(panel->status), TRUE);
+  gtk_misc_set_alignment(GTK_MISC(panel->status), 0, 0);
+  gtk_widget_set_size_request(panel->status, 480, 40);
+  atk_object_set_name(gtk_widget_get_accessible(panel->status), _("Status"));
+  return panel->status;
+}
+
+static void build(rp_panel *panel) {
+  panel->box = rp_ui_box(GTK_ORIENTATION_VERTICAL, 6);
+  panel->area = rp_preview_new(&panel->scene, on_dragged, panel);
+  gtk_box_pack_start(GTK_BOX(panel->box), panel->area, TRUE, TRUE, 0);
+  panel->row = show_row(panel);
+  gtk_box_pack_start(GTK_BOX(panel->box), panel->row, FALSE, FALSE, 0);
+  gtk_box_pack_start(GTK_BOX(panel->box), status_line(panel), FALSE, FALSE, 0);
+  panel->progress = gtk_progress_bar_new();
+  gtk_box_pack_start(GTK_BOX(panel->box), panel->progress, FALSE, FALSE, 0);
+  gtk_widget_show_all(panel->box);
+}
+
+rp_panel *rp_panel_new(rp_host *host, rp_settings *settings, rp_picture *picture, rp_set_func set,
+                       gpointer user) {
+  rp_panel *panel = g_new0(rp_panel, 1);
+  *panel =
+      (rp_panel){.host = host, .settings = settings, .picture = picture, .set = set, .user = user};
+  panel->estimate = (rp_background){.done = on_estimate, .user = panel};
+  panel->draft = (rp_background){.done = on_draft, .user = panel};
+  if (!rp_scene_new(picture, PROXY_LONGEST_PX, &panel->scene)) {
+    rp_panel_free(panel);
+    return NULL;
+  }
+  build(panel);
+  if (settings->procedure == RP_FILL) take_source(panel);
+  show_plane(panel);
+  if (choice(panel, "orientation") == RECEDE_ORIENTATION_AUTO) start_estimate(panel);
+  return panel;
+}
+
+GtkWidget *rp_panel_widget(rp_panel *panel) { return panel->box; }
+
+void rp_panel_free(rp_panel *panel) {
+  stop_draft(panel);
+  rp_background_stop(&panel->estimate);
+  rp_scene_clear(&panel->scene);
+  g_free(panel->draft_pixels);
+  g_free(panel);
+}
+
+/* -------------------------------------------------------------------------------------- run -- */
+
+static gboolean tell(const rp_state *state, gpointer user) {
+  rp_panel *panel = user;
+  say(panel, rp_stage_label(state->stage));
+  gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(panel->progress), CLAMP(state->fraction, 0, 1));
+  while (gtk_events_pending()) gtk_main_iteration();
+  return panel->cancelled;
+}
+
+static void on_response(GtkDialog *dialog, gint response, gpointer user) {
+  (void)dialog;
+  if (response == GTK_RESPONSE_CANCEL || response == GTK_RESPONSE_DELETE_EVENT)
+    ((rp_panel *)user)->cancelled = TRUE;
+}
+
+static gboolean keep_open(GtkWidget *dialog, GdkEvent *event, gpointer user) {
+  (void)dialog, (void)event;
+  ((rp_panel *)user)->cancelled = TRUE;
+  return TRUE;
+}
+
+static rp_outcome run(rp_panel *panel, GtkWidget *dialog, rp_request *request, char **message) {
+  gulong response = g_signal_connect(dialog, "response", G_CALLBACK(on_response), panel);
+  gulong closing = g_signal_connect(dialog, "delete-event", G_CALLBACK(keep_open), panel);
+  panel->cancelled = FALSE;
+  rp_outcome outcome =
+      rp_compute(panel->host, panel->settings, panel->picture, request, tell, panel, message);
+  g_signal_handler_disconnect(dialog, response);
+  g_signal_handler_disconnect(dialog, closing);
+  return outcome;
+}
+
+static void set_sensitive(rp_panel *panel, GtkWidget *dialog, GtkWidget *controls,
+                          gboolean sensitive) {
+  gtk_widget_set_sensitive(panel->area, sensitive);
+  gtk_widget_set_sensitive(panel->row, sensitive);
+  gtk_widget_set_sensitive(controls, sensitive);
+  gtk_dialog_set_response_sensitive(GTK_DIALOG(dialog), GTK_RESPONSE_OK, sensitive);
+}
+
+gboolean rp_panel_compute(rp_panel *panel, GtkWidget *dialog, GtkWidget *controls,
+                          rp_request *request) {
+  char *message = NULL;
+  stop_draft(panel);
+  rp_background_stop(&panel->estimate);
+  gtk_widget_set_sensitive(panel->estimate_button, TRUE);
+  set_sensitive(panel, dialog, controls, FALSE);
+  rp_outcome outcome = run(panel, dialog, request, &message);
+  gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(panel->progress), 0);
+  set_sensitive(panel, dialog, controls, TRUE);
+  if (outcome == RP_CANCELLED) say(panel, _("Stopped; the picture has not been changed."));
+  if (message) say(panel, message);
+  g_free(message);
+  return outcome == RP_DONE;
+}

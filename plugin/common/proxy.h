@@ -1,0 +1,23 @@
+/* proxy.h - the picture at preview size: what the preview shows and the draft fills. */
+#ifndef RP_PROXY_H
+#define RP_PROXY_H
+
+#include "picture.h"
+
+typedef struct {
+  int width, height;
+  double shrink;  /* picture pixels per proxy pixel */
+  guchar *rgba;   /* R'G'B'A, 4 bytes a pixel, alpha not premultiplied */
+  guchar *mask;   /* 255 where the fill goes, else 0 */
+  guchar *source; /* 255: may be copied from; NULL: everything */
+} rp_proxy;
+
+/* No longer than longest px. FALSE: no memory. */
+gboolean rp_proxy_new(const rp_picture *picture, int longest, rp_proxy *proxy);
+/* Takes picture->source, or everything when it has none. */
+void rp_proxy_set_source(rp_proxy *proxy, const rp_picture *picture);
+void rp_proxy_clear(rp_proxy *proxy);
+/* Centre of the mask, in proxy pixels; the middle when there is no mask. */
+void rp_proxy_centre(const rp_proxy *proxy, double *x, double *y);
+
+#endif

@@ -1,0 +1,188 @@
+/* The preview's state and its handles. */
+#include "scene.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "grid.h"
+#include "surface.h"
+
+gboolean rp_scene_new(const rp_picture *picture, int longest, rp_scene *scene) {
+  memset(scene, 0, sizeof *scene);
+  if (!rp_proxy_new(picture, longest, &scene->proxy)) return FALSE;
+  rp_proxy *proxy = &scene->proxy;
+  rp_proxy_centre(proxy, &scene->centre_x, &scene->centre_y);
+  scene->photo = rp_surface_of_pixels(proxy->rgba, proxy->width, proxy->height);
+  scene->outline = rp_surface_of_outline(proxy);
+  scene->shade_is_old = TRUE;
+  return rp_scene_set_angles(scene, 0, 0, 50);
+}
+
+void rp_scene_clear(rp_scene *scene) {
+  g_clear_pointer(&scene->photo, cairo_surface_destroy);
+  g_clear_pointer(&scene->outline, cairo_surface_destroy);
+  g_clear_pointer(&scene->shade, cairo_surface_destroy);
+  g_clear_pointer(&scene->draft, cairo_surface_destroy);
+  rp_proxy_clear(&scene->proxy);
+}
+
+gboolean rp_scene_set_angles(rp_scene *scene, double slant_deg, double tilt_deg, double fov_deg) {
+  recede_plane plane;
+  if (recede_plane_from_angles(scene->proxy.width, scene->proxy.height, slant_deg, tilt_deg,
+                               fov_deg, &plane) != RECEDE_OK)
+    return FALSE;
+  scene->plane = plane;
+  scene->shade_is_old = TRUE;
+  return TRUE;
+}
+
+void rp_scene_set_source(rp_scene *scene, const rp_picture *picture) {
+  rp_proxy_set_source(&scene->proxy, picture);
+  scene->shade_is_old = TRUE;
+}
+
+void rp_scene_set_draft(rp_scene *scene, const guchar *pixels) {
+  g_clear_pointer(&scene->draft, cairo_surface_destroy);
+  if (pixels) scene->draft = rp_surface_of_pixels(pixels, scene->proxy.width, scene->proxy.height);
+}
+
+/* ---------------------------------------------------------------------------------- handles -- */
+
+typedef struct {
+  double x, y;
+} point;
+
+/* The horizon's two handles, a quarter and three quarters along what is seen of it. */
+static gboolean handles(const rp_scene *scene, point *left, point *right) {
+  double ends[4];
+  if (!rp_grid_horizon(&scene->plane, ends)) return FALSE;
+  left->x = ends[0] + (ends[2] - ends[0]) * .25, left->y = ends[1] + (ends[3] - ends[1]) * .25;
+  right->x = ends[0] + (ends[2] - ends[0]) * .75, right->y = ends[1] + (ends[3] - ends[1]) * .75;
+  return TRUE;
+}
+
+static double distance_to_line(point a, point b, double x, double y) {
+  double dx = b.x - a.x, dy = b.y - a.y;
+  return fabs((x - a.x) * dy - (y - a.y) * dx) / fmax(hypot(dx, dy), 1e-9);
+}
+
+rp_grab rp_scene_grab(const rp_scene *scene, double x, double y, double reach) {
+  point left, right;
+  if (!handles(scene, &left, &right)) return RP_GRAB_PLANE;
+  if (hypot(x - left.x, y - left.y) < reach) return RP_GRAB_LEFT;
+  if (hypot(x - right.x, y - right.y) < reach) return RP_GRAB_RIGHT;
+  if (distance_to_line(left, right, x, y) < reach * .7) return RP_GRAB_HORIZON;
+  return RP_GRAB_PLANE;
+}
+
+static void ray(const recede_plane *plane, const double at[2], double out[3]) {
+  out[0] = (at[0] - (plane->width - 1) / 2.) / plane->focal_px;
+  out[1] = (at[1] - (plane->height - 1) / 2.) / plane->focal_px;
+  out[2] = 1;
+  double length = sqrt(out[0] * out[0] + out[1] * out[1] + 1);
+  for (int i = 0; i < 3; i++) out[i] /= length;
+}
+
+/* Turns the plane as a ball under the pointer: the rotation that takes one ray to the other. */
+static void turn(const recede_plane *start, const double from[2], const double to[2],
+                 recede_plane *plane) {
+  double a[3], b[3];
+  const double *n = start->normal;
+  ray(start, from, a);
+  ray(start, to, b);
+  double axis[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                    a[0] * b[1] - a[1] * b[0]};
+  double cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  double along = (axis[0] * n[0] + axis[1] * n[1] + axis[2] * n[2]) / (1 + cosine);
+  double cross[3] = {axis[1] * n[2] - axis[2] * n[1], axis[2] * n[0] - axis[0] * n[2],
+                     axis[0] * n[1] - axis[1] * n[0]};
+  *plane = *start; /* Rodrigues, with |axis| = sine */
+  for (int i = 0; i < 3; i++) plane->normal[i] = n[i] * cosine + cross[i] + axis[i] * along;
+}
+
+static gboolean bend(const rp_scene *scene, rp_grab grab, const recede_plane *start,
+                     const double to[2], recede_plane *plane) {
+  point left, right;
+  double fov_deg, slant_deg, tilt_deg;
+  rp_scene then = *scene;
+  then.plane = *start;
+  if (!handles(&then, &left, &right)) return FALSE;
+  point *moved = grab == RP_GRAB_LEFT ? &left : &right;
+  moved->x = to[0], moved->y = to[1];
+  recede_plane_angles(start, &slant_deg, &tilt_deg, &fov_deg);
+  return recede_plane_from_horizon(start->width, start->height, fov_deg, left.x, left.y, right.x,
+                                   right.y, scene->centre_x, scene->centre_y, plane) == RECEDE_OK;
+}
+
+gboolean rp_scene_drag(const rp_scene *scene, rp_grab grab, const recede_plane *start,
+                       const double from[2], const double to[2], double *slant_deg,
+                       double *tilt_deg) {
+  recede_plane plane;
+  double fov_deg;
+  if (grab == RP_GRAB_LEFT || grab == RP_GRAB_RIGHT) {
+    if (!bend(scene, grab, start, to, &plane)) return FALSE;
+  } else {
+    turn(start, from, to, &plane);
+  }
+  recede_plane_angles(&plane, slant_deg, tilt_deg, &fov_deg);
+  return isfinite(*slant_deg) && isfinite(*tilt_deg) && *slant_deg < 179;
+}
+
+/* ---------------------------------------------------------------------------------- drawing -- */
+
+#define MARGIN .07 /* of the widget, around the photo */
+
+rp_fit rp_scene_fit(const rp_scene *scene, int width, int height) {
+  double inner_width = width * (1 - 2 * MARGIN), inner_height = height * (1 - 2 * MARGIN);
+  double zoom = fmin(inner_width / scene->proxy.width, inner_height / scene->proxy.height);
+  return (rp_fit){(width - zoom * scene->proxy.width) / 2,
+                  (height - zoom * scene->proxy.height) / 2, zoom};
+}
+
+static void refresh_shade(rp_scene *scene) {
+  if (!scene->shade_is_old) return;
+  g_clear_pointer(&scene->shade, cairo_surface_destroy);
+  scene->shade =
+      scene->show == RP_SHOW_SCALE
+          ? rp_surface_of_scale(&scene->proxy, &scene->plane, scene->centre_x, scene->centre_y)
+          : rp_surface_of_magnified(&scene->proxy, &scene->plane);
+  scene->shade_is_old = FALSE;
+}
+
+static void paint(cairo_t *cairo, cairo_surface_t *surface) {
+  if (!surface) return;
+  cairo_set_source_surface(cairo, surface, 0, 0);
+  cairo_paint(cairo);
+}
+
+static void draw_handles(const rp_scene *scene, cairo_t *cairo, double zoom) {
+  point left, right;
+  if (!handles(scene, &left, &right)) return;
+  for (int i = 0; i < 2; i++) {
+    point at = i ? right : left;
+    cairo_arc(cairo, at.x, at.y, 6 / zoom, 0, 2 * G_PI);
+    cairo_set_source_rgb(cairo, 1, 1, 1);
+    cairo_fill_preserve(cairo);
+    cairo_set_line_width(cairo, 2 / zoom);
+    cairo_set_source_rgb(cairo, .8, .1, .1);
+    cairo_stroke(cairo);
+  }
+}
+
+void rp_scene_draw(rp_scene *scene, cairo_t *cairo, int width, int height) {
+  rp_fit fit = rp_scene_fit(scene, width, height);
+  gboolean draft = scene->show == RP_SHOW_DRAFT && scene->draft;
+  cairo_set_source_rgb(cairo, .2, .2, .2);
+  cairo_paint(cairo);
+  cairo_translate(cairo, fit.x, fit.y);
+  cairo_scale(cairo, fit.zoom, fit.zoom);
+  paint(cairo, draft ? scene->draft : scene->photo);
+  if (scene->show != RP_SHOW_DRAFT) {
+    refresh_shade(scene);
+    paint(cairo, scene->shade);
+    rp_grid_draw(&scene->plane, cairo, scene->centre_x, scene->centre_y, fit.zoom,
+                 scene->show == RP_SHOW_GRID);
+    draw_handles(scene, cairo, fit.zoom);
+  }
+  if (!draft) paint(cairo, scene->outline);
+}

@@ -1,0 +1,13 @@
+/* toolkit.h - the few things that GTK 2 and GTK 3 do differently; gimp2/ and gimp3/ each have a
+ * toolkit.c. */
+#ifndef RP_TOOLKIT_H
+#define RP_TOOLKIT_H
+
+#include <gtk/gtk.h>
+
+GtkWidget *rp_ui_box(GtkOrientation orientation, int spacing);
+/* A drawing area that calls draw with a context of its own. */
+GtkWidget *rp_ui_drawing_area(void (*draw)(cairo_t *cairo, int width, int height, gpointer user),
+                              gpointer user);
+
+#endif
