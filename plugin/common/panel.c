@@ -117,10 +117,22 @@ static void show_plane(rp_panel *panel) {
   gtk_widget_queue_draw(panel->area);
 }
 
+/* Whoever sets an angle by hand means it. */
+static void take_angles(rp_panel *panel) {
+  if (choice(panel, "orientation") == RECEDE_ORIENTATION_ANGLES) return;
+  rp_background_stop(&panel->estimate);
+  gtk_widget_set_sensitive(panel->estimate_button, TRUE);
+  panel->setting = TRUE;
+  panel->set(panel->user, "orientation", RECEDE_ORIENTATION_ANGLES);
+  panel->setting = FALSE;
+  say(panel, NULL);
+}
+
 static void on_estimate(gpointer user, const rp_request *request) {
   rp_panel *panel = user;
   gtk_widget_set_sensitive(panel->estimate_button, TRUE);
   if (request->status != RECEDE_OK || request->orientation.confidence < RECEDE_CONFIDENCE_LOW) {
+    take_angles(panel); /* what is shown is what will be filled */
     say(panel, _("The orientation could not be read from the picture with confidence. Drag the "
                  "horizon or the grid until the squares lie on the ground."));
     return;
@@ -165,17 +177,6 @@ static void on_estimate_clicked(GtkButton *button, gpointer user) {
 }
 
 /* ---------------------------------------------------------------------------------- changes -- */
-
-/* Whoever sets an angle by hand means it. */
-static void take_angles(rp_panel *panel) {
-  if (choice(panel, "orientation") == RECEDE_ORIENTATION_ANGLES) return;
-  rp_background_stop(&panel->estimate);
-  gtk_widget_set_sensitive(panel->estimate_button, TRUE);
-  panel->setting = TRUE;
-  panel->set(panel->user, "orientation", RECEDE_ORIENTATION_ANGLES);
-  panel->setting = FALSE;
-  say(panel, NULL);
-}
 
 static void on_dragged(gpointer user, double slant_deg, double tilt_deg) {
   rp_panel *panel = user;
@@ -241,9 +242,7 @@ static GtkWidget *show_row(rp_panel *panel) {
 
 /* Two lines are kept free for it, so that nothing jumps. */
 static GtkWidget *status_line(rp_panel *panel) {
-  panel->status = gtk_label_new("\n");
-  gtk_label_set_line_wrap(GTK_LABEL(panel->status), TRUE);
-  gtk_misc_set_alignment(GTK_MISC(panel->status), 0, 0);
+  panel->status = rp_ui_paragraph();
   gtk_widget_set_size_request(panel->status, 480, 40);
   atk_object_set_name(gtk_widget_get_accessible(panel->status), _("Status"));
   return panel->status;
@@ -275,6 +274,7 @@ rp_panel *rp_panel_new(rp_host *host, rp_settings *settings, rp_picture *picture
   build(panel);
   if (settings->procedure == RP_FILL) take_source(panel);
   show_plane(panel);
+  say(panel, _("Drag the horizon, its handles or the grid to lay the plane on the picture."));
   if (choice(panel, "orientation") == RECEDE_ORIENTATION_AUTO) start_estimate(panel);
   return panel;
 }

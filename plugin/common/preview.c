@@ -4,8 +4,8 @@
 #include "intl.h"
 
 #define REACH_PX 10 /* of a handle, on the screen */
-#define SMALLEST_WIDTH 480
-#define SMALLEST_HEIGHT 380
+#define SMALLEST_WIDTH 600
+#define SMALLEST_HEIGHT 420
 
 typedef struct {
   rp_scene *scene;
@@ -46,13 +46,7 @@ static gboolean on_release(GtkWidget *area, GdkEventButton *event, gpointer data
 static void show_cursor(GtkWidget *area, rp_grab grab) {
   static const GdkCursorType shapes[] = {GDK_FLEUR, GDK_FLEUR, GDK_SB_V_DOUBLE_ARROW, GDK_CROSSHAIR,
                                          GDK_CROSSHAIR};
-  GdkCursor *cursor = gdk_cursor_new_for_display(gtk_widget_get_display(area), shapes[grab]);
-  gdk_window_set_cursor(gtk_widget_get_window(area), cursor);
-#if GTK_CHECK_VERSION(3, 0, 0)
-  g_object_unref(cursor);
-#else
-  gdk_cursor_unref(cursor);
-#endif
+  rp_ui_set_cursor(area, shapes[grab]);
 }
 
 static gboolean on_motion(GtkWidget *area, GdkEventMotion *event, gpointer data) {
@@ -82,8 +76,6 @@ GtkWidget *rp_preview_new(rp_scene *scene, rp_angles_func dragged, gpointer user
   g_signal_connect(area, "button-press-event", G_CALLBACK(on_press), p);
   g_signal_connect(area, "button-release-event", G_CALLBACK(on_release), p);
   g_signal_connect(area, "motion-notify-event", G_CALLBACK(on_motion), p);
-  gtk_widget_set_tooltip_text(area, _("Drag the horizon, its handles or the grid to lay the plane "
-                                      "on the picture"));
   atk_object_set_name(gtk_widget_get_accessible(area), _("Preview"));
   return area;
 }

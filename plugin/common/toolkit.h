@@ -9,5 +9,8 @@ GtkWidget *rp_ui_box(GtkOrientation orientation, int spacing);
 /* A drawing area that calls draw with a context of its own. */
 GtkWidget *rp_ui_drawing_area(void (*draw)(cairo_t *cairo, int width, int height, gpointer user),
                               gpointer user);
+/* A label of several lines that starts at the top left. */
+GtkWidget *rp_ui_paragraph(void);
+void rp_ui_set_cursor(GtkWidget *widget, GdkCursorType type);
 
 #endif

@@ -32,3 +32,16 @@ GtkWidget *rp_ui_drawing_area(void (*draw)(cairo_t *cairo, int width, int height
   g_object_set_data_full(G_OBJECT(area), "recede-painter", p, g_free);
   return area;
 }
+
+GtkWidget *rp_ui_paragraph(void) {
+  GtkWidget *label = gtk_label_new("\n");
+  gtk_label_set_line_wrap(GTK_LABEL(label), TRUE);
+  gtk_misc_set_alignment(GTK_MISC(label), 0, 0);
+  return label;
+}
+
+void rp_ui_set_cursor(GtkWidget *widget, GdkCursorType type) {
+  GdkCursor *cursor = gdk_cursor_new_for_display(gtk_widget_get_display(widget), type);
+  gdk_window_set_cursor(gtk_widget_get_window(widget), cursor);
+  gdk_cursor_unref(cursor);
+}
