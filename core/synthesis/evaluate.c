@@ -69,10 +69,12 @@ float rc_place_price(float variance, const rc_place *place, float low, float hig
 
 static int32_t fixed(float value) { return (int32_t)floorf(value * 65536.f + .5f); }
 
-/* How far from its centre a footprint's pixels lie, Chebyshev, rounded up. */
-static int reach(const float j[4]) {
+/* Whether all of a footprint lies in a square of room px around its centre's pixel. A pixel's index is
+ * floor(fraction + .5 + offset), fraction < 1; .001 covers the fixed point's rounding. False for an
+ * infinite or undefined Jacobian. */
+static bool fits(const float j[4], uint8_t room) {
   float x = fabsf(j[0]) + fabsf(j[1]), y = fabsf(j[2]) + fabsf(j[3]);
-  return (int)(RC_PATCH_RADIUS * fmaxf(x, y) + 1.f);
+  return RC_PATCH_RADIUS * x + 1.501f < (float)room && RC_PATCH_RADIUS * y + 1.501f < (float)room;
 }
 
 static bool set_footprint(const rc_level *level, const rc_chart *chart, rc_copy copy,
@@ -84,7 +86,7 @@ static bool set_footprint(const rc_level *level, const rc_chart *chart, rc_copy 
   size_t at = (size_t)iy * (size_t)level->width + (size_t)ix;
   if (level->room[at] < RC_PATCH_RADIUS + 1) return false;
   rc_copy_jacobian(chart, copy, place, jacobian);
-  if (level->room[at] <= reach(jacobian)) return false;
+  if (!fits(jacobian, level->room[at])) return false;
   footprint->origin = level->pixels + at;
   footprint->stride = level->width;
   footprint->x = fixed(x - (float)ix) + 32768;
