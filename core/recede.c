@@ -124,18 +124,22 @@ static rc_views views_of(const recede_job *job) {
 
 /* ----------------------------------------------------------------------------- orientation -- */
 
-static recede_status estimate_orientation(recede_job *job, double fov_deg, recede_plane *plane,
-                                          double *confidence) {
+/* on (may be NULL): a point of the picture that lies on the plane. */
+static recede_status estimate_orientation(recede_job *job, double fov_deg, const double on[2],
+                                          recede_plane *plane, double *confidence) {
   rc_context *context = &job->context;
   int longest = job->image.width > job->image.height ? job->image.width : job->image.height;
   int factor = (longest + ESTIMATE_LONGEST_PX - 1) / ESTIMATE_LONGEST_PX;
   rc_views views = views_of(job);
   rc_image image;
   rc_mask flags;
+  double small_on[2];
+  for (int i = 0; i < 2 && on; i++) small_on[i] = (on[i] + .5) / factor - .5;
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_stage(context, "orientation", 0, .03));
   RC_TRY(rc_shrink(context, &views, factor, &image, &flags));
-  RC_TRY(rc_estimate_plane(context, &image, &flags, fov_deg, plane, confidence));
+  RC_TRY(rc_estimate_plane(context, &image, &flags, fov_deg, on ? small_on : NULL, plane,
+                           confidence));
   rc_release(context, mark);
   plane->focal_px *= (double)longest / (image.width > image.height ? image.width : image.height);
   plane->width = job->image.width;
@@ -175,7 +179,9 @@ static recede_status resolve_plane(recede_job *job, int width, int height, doubl
     default: break;
   }
   orientation->estimated = 1;
-  return estimate_orientation(job, p->fov_deg, plane, &orientation->confidence);
+  const double on[2] = {on_x, on_y};
+  return estimate_orientation(job, p->fov_deg, job->mask.data ? on : NULL, plane,
+                              &orientation->confidence);
 }
 
 static void describe(recede_orientation *orientation) {

@@ -1,0 +1,32 @@
+/* How well one texture, lying on one plane, explains a picture's local spectra. */
+#ifndef RECEDE_PLANE_HOMOGENEITY_H
+#define RECEDE_PLANE_HOMOGENEITY_H
+
+#include "plane/spectra.h"
+
+/* A plane as the search sees it: slant * (sin tilt, cos tilt), radians. Smooth at frontal. */
+typedef struct rc_lean {
+  double across, along;
+} rc_lean;
+
+typedef struct rc_homogeneity {
+  const rc_spectra *spectra;
+  int width, height; /* of the picture, px */
+  double focal_px;
+  double ref_x, ref_y; /* px: lies on the plane */
+  float *weight;       /* of each spectrum */
+  bool raised;         /* the texture stands up from the plane: it shrinks but does not flatten */
+  float saturation;    /* a cell's squared misfit from which on it counts as not of the plane */
+} rc_homogeneity;
+
+/* normal (0, 0, 1) turned by the lean: what recede_plane holds. */
+void rc_lean_normal(rc_lean lean, double normal[3]);
+
+/* Bytes of scratch memory that one call of rc_homogeneity_cost() needs. */
+size_t rc_homogeneity_scratch(const rc_homogeneity *h);
+/* Mean squared misfit in log2 of power, outliers saturated; large where the plane is impossible.
+ * misfit (may be NULL): that of every cell, NaN where the plane leaves too little to compare,
+ * infinite beyond the horizon. */
+double rc_homogeneity_cost(const rc_homogeneity *h, rc_lean lean, float *scratch, float *misfit);
+
+#endif

@@ -1,0 +1,150 @@
+/* Orientation read from pictures that this test draws: a texture on a plane of known angles, seen
+ * through the inverse map that the test computes on its own. */
+#include <glib.h>
+#include <math.h>
+#include <string.h>
+
+#include "recede.h"
+
+#define SIDE 384
+#define RADIAN (G_PI / 180)
+#define FOV 50
+
+typedef enum { BRICKS, DOTS, NOISE } texture_kind;
+
+/* A repeatable number in 0..1 for a place: not the library's generator. */
+static double chance(int x, int y, int n) {
+  uint32_t v = (uint32_t)x * 73856093u ^ (uint32_t)y * 19349663u ^ (uint32_t)n * 83492791u;
+  v = (v ^ 61) ^ v >> 16;
+  v *= 9;
+  v ^= v >> 4;
+  v *= 0x27d4eb2d;
+  v ^= v >> 15;
+  return (double)v / 4294967296.;
+}
+
+static double bricks(double u, double v) {
+  int row = (int)floor(v / 18);
+  double along = u / 36 + (row % 2 ? .5 : 0);
+  double x = (along - floor(along)) * 36, y = v - row * 18.;
+  return x < 3 || y < 3 ? .85 : .25 + .35 * chance((int)floor(along), row, 1);
+}
+
+static double dots(double u, double v) {
+  int cx = (int)floor(u / 16), cy = (int)floor(v / 16);
+  double value = .3;
+  for (int y = cy - 1; y <= cy + 1; y++)
+    for (int x = cx - 1; x <= cx + 1; x++) {
+      double dx = u - 16 * (x + chance(x, y, 2)), dy = v - 16 * (y + chance(x, y, 3));
+      if (hypot(dx, dy) < 3 + 4 * chance(x, y, 4)) value = .2 + .7 * chance(x, y, 5);
+    }
+  return value;
+}
+
+static double texture(texture_kind kind, double u, double v) {
+  return kind == BRICKS ? bricks(u, v)
+         : kind == DOTS ? dots(u, v)
+                        : chance((int)floor(u / 2), (int)floor(v / 2), 6);
+}
+
+/* One texel is 1 px at (on_x, on_y); 4 x 4 samples a pixel; beyond the horizon a plain sky. */
+static void draw(texture_kind kind, double slant, double tilt, double on_x, double on_y,
+                 guint8 *gray) {
+  double s = slant * RADIAN, t = tilt * RADIAN, f = .5 * SIDE / tan(FOV * RADIAN / 2),
+         c = .5 * (SIDE - 1);
+  double n[3] = {-sin(s) * sin(t), sin(s) * cos(t), cos(s)};
+  double w0 = (n[0] * (on_x - c) + n[1] * (on_y - c)) / f + n[2];
+  /* Two axes in the plane, at right angles to n and to one another. */
+  double a[3] = {cos(t), sin(t), 0};
+  double b[3] = {n[1] * a[2] - n[2] * a[1], n[2] * a[0] - n[0] * a[2], n[0] * a[1] - n[1] * a[0]};
+  for (int y = 0; y < SIDE; y++)
+    for (int x = 0; x < SIDE; x++) {
+      double sum = 0;
+      for (int k = 0; k < 16; k++) {
+        double r[3] = {(x + (k % 4 - 1.5) / 4 - c) / f, (y + (k / 4 - 1.5) / 4 - c) / f, 1};
+        double w = (n[0] * r[0] + n[1] * r[1] + n[2]) / w0;
+        if (w < .02) {
+          sum += .8;
+          continue;
+        }
+        double u = (a[0] * r[0] + a[1] * r[1] + a[2]) * f / w,
+               v = (b[0] * r[0] + b[1] * r[1] + b[2]) * f / w;
+        sum += texture(kind, u, v);
+      }
+      gray[y * SIDE + x] = (guint8)(sum / 16 * 255 + .5);
+    }
+}
+
+typedef struct question {
+  guint8 gray[SIDE * SIDE], mask[SIDE * SIDE], source[SIDE * SIDE];
+  gboolean masked, sourced;
+  recede_host host;
+  recede_orientation answer;
+  char message[512];
+} question;
+
+static question *new_question(void) {
+  question *q = g_new0(question, 1);
+  recede_host_init(&q->host);
+  q->host.threads = 2;
+  return q;
+}
+
+static recede_status ask(question *q) {
+  recede_job *job = recede_job_new(&q->host);
+  recede_params params;
+  recede_view image = {q->gray, SIDE, SIDE, SIDE, 1, RECEDE_U8};
+  recede_view mask = {q->mask, SIDE, SIDE, SIDE, 1, RECEDE_U8};
+  recede_view source = {q->source, SIDE, SIDE, SIDE, 1, RECEDE_U8};
+  recede_params_init(&params);
+  params.fov_deg = FOV;
+  recede_job_set_params(job, &params);
+  recede_job_set_image(job, &image);
+  if (q->masked) recede_job_set_mask(job, &mask);
+  if (q->sourced) recede_job_set_source(job, &source);
+  recede_status status = recede_job_orient(job, &q->answer);
+  g_strlcpy(q->message, recede_job_message(job), sizeof q->message);
+  recede_job_free(&job);
+  return status;
+}
+
+static double error_deg(const recede_orientation *answer, double slant, double tilt) {
+  double s = slant * RADIAN, t = tilt * RADIAN;
+  const double *n = answer->plane.normal;
+  double dot = -n[0] * sin(s) * sin(t) + n[1] * sin(s) * cos(t) + n[2] * cos(s);
+  return acos(CLAMP(dot, -1, 1)) / RADIAN;
+}
+
+static void check(texture_kind kind, double slant, double tilt, double bound) {
+  question *q = new_question();
+  draw(kind, slant, tilt, .5 * SIDE, .5 * SIDE, q->gray);
+  g_assert_cmpint(ask(q), ==, RECEDE_OK);
+  g_test_message("kind %d slant %g tilt %g: %.2f deg off, confidence %.2f", kind, slant, tilt,
+                 error_deg(&q->answer, slant, tilt), q->answer.confidence);
+  g_assert_cmpfloat(error_deg(&q->answer, slant, tilt), <, bound);
+  g_assert_cmpfloat(q->answer.confidence, >, RECEDE_CONFIDENCE_LOW);
+  g_assert_true(q->answer.estimated);
+  g_free(q);
+}
+
+static void known_planes_are_read(void) {
+  static const double tilts[] = {-170, -95, -30, 0, 45, 120};
+  for (size_t i = 0; i < G_N_ELEMENTS(tilts); i++) {
+    check(BRICKS, 55, tilts[i], 4);
+    check(DOTS, 45, tilts[i], 8);
+  }
+  check(BRICKS, 25, 60, 4);
+}
+
+static void frontal_textures_stay_frontal(void) {
+  check(BRICKS, 0, 0, 1);
+  check(DOTS, 0, 0, 4);
+  check(NOISE, 0, 0, 4);
+}
+
+int main(int argc, char **argv) {
+  g_test_init(&argc, &argv, NULL);
+  g_test_add_func("/orient/known", known_planes_are_read);
+  g_test_add_func("/orient/frontal", frontal_textures_stay_frontal);
+  return g_test_run();
+}
