@@ -72,10 +72,16 @@ static char *explanation(const recede_param_info *row) {
   return g_strdup_printf("%s (default %g%s)", row->help, row->default_value, row->unit);
 }
 
+static const char *keep(GStringChunk *kept, char *text) {
+  const char *copy = g_string_chunk_insert(kept, text);
+  g_free(text);
+  return copy;
+}
+
 /* The rows of the table that are options; the source of the orientation follows from which of them
- * are given. orientation: those of the orientation, or the others. GOption keeps pointers: the
- * texts live as long as the process. */
-static void add_params(GOptionGroup *group, bool orientation) {
+ * are given. orientation: those of the orientation, or the others. GOption keeps pointers: kept must
+ * live as long as the group. */
+static void add_params(GOptionGroup *group, bool orientation, GStringChunk *kept) {
   static const char *const of_orientation[] = {"slant", "tilt", "fov", "horizon", "quad", NULL};
   size_t rows;
   const recede_param_info *table = recede_param_table(&rows);
@@ -84,8 +90,9 @@ static void add_params(GOptionGroup *group, bool orientation) {
     if (!(row->flags & RECEDE_PARAM_COMMAND) || strcmp(row->key, "orientation") == 0) continue;
     if (g_strv_contains(of_orientation, row->key) != orientation) continue;
     GOptionEntry entries[] = {{row->key, 0, is_switch(row) ? G_OPTION_FLAG_NO_ARG : 0,
-                               G_OPTION_ARG_CALLBACK, (gpointer)on_param, explanation(row),
-                               is_switch(row) ? NULL : placeholder(row)},
+                               G_OPTION_ARG_CALLBACK, (gpointer)on_param,
+                               keep(kept, explanation(row)),
+                               is_switch(row) ? NULL : keep(kept, placeholder(row))},
                               {NULL}};
     g_option_group_add_entries(group, entries);
   }
@@ -272,9 +279,10 @@ bool options_parse(options_of command, int argc, char **argv, options *given) {
   GOptionEntry frontal[] = {
       ENTRY("frontal", 0, NONE, frontal, "The plane is seen from the front: no perspective", NULL),
       END};
-  add_params(group, true);
+  GStringChunk *kept = g_string_chunk_new(4096);
+  add_params(group, true, kept);
   g_option_group_add_entries(group, frontal);
-  if (command != ORIENT) add_params(group, false);
+  if (command != ORIENT) add_params(group, false, kept);
   add_common(group, given);
   g_option_context_set_main_group(context, group);
   bool good =
@@ -285,6 +293,7 @@ bool options_parse(options_of command, int argc, char **argv, options *given) {
     g_error_free(error);
   }
   g_option_context_free(context);
+  g_string_chunk_free(kept);
   g_free(name);
   return good;
 }
