@@ -60,10 +60,11 @@ typedef struct image_bytes {
 void image_bytes_free(image_bytes *bytes);
 
 /* Encodes the view. like: where the colour profile, compression, resolution and, from EXR to EXR,
- * channel names come from; NULL: none. keep: it is the same picture, so EXR's attributes and
- * windows come too. */
+ * channel names come from; NULL: none. premultiplied: the view's colours are. keep: it is the same
+ * picture, so EXR's attributes and windows come too. */
 image_status image_encode(const recede_view *view, const char *format, const image_decoder *like,
-                          bool keep, image_bytes *bytes, image_message *message);
+                          bool premultiplied, bool keep, image_bytes *bytes,
+                          image_message *message);
 
 #ifdef __cplusplus
 }

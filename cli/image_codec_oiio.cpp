@@ -139,13 +139,12 @@ image_info describe(const ImageSpec &spec, const std::string &format) {
   info.stored_bits = spec.get_int_attribute("oiio:BitsPerSample", int(spec.format.size()) * 8);
   info.dpi_x = dpi_of(spec, "XResolution");
   info.dpi_y = dpi_of(spec, "YResolution");
-  info.orientation = spec.get_int_attribute("Orientation", 1);
+  // Targa's reader gives the rows as seen, and the tag besides.
+  info.orientation = format == "targa" ? 1 : spec.get_int_attribute("Orientation", 1);
   if (info.orientation < 1 || info.orientation > 8) info.orientation = 1;
   info.indexed = spec.get_int_attribute("tiff:PhotometricInterpretation", 2) == 3;
-  // PNG, Targa and the like store colours plain; TIFF says which; EXR always multiplies.
-  bool plain = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0;
-  info.premultiplied =
-      spec.alpha_channel >= 0 && !plain && (format == "openexr" || format == "tiff");
+  // PNG, Targa and the like store colours plain; EXR always multiplies; TIFF's tag says which.
+  info.premultiplied = spec.alpha_channel >= 0 && format == "openexr";
   return info;
 }
 
@@ -194,7 +193,7 @@ void take_jpeg_settings(ImageSpec &spec, const ImageSpec *like) {
 }
 
 ImageSpec spec_for(const recede_view *view, const std::string &format, const image_decoder *like,
-                   bool keep) {
+                   bool premultiplied, bool keep) {
   ImageSpec spec(view->width, view->height, view->channels, format_of(view->type));
   std::string compression;
   if (view->channels < 3) spec.channelnames[0] = "Y";
@@ -209,17 +208,19 @@ ImageSpec spec_for(const recede_view *view, const std::string &format, const ima
   }
   if (like && !(keep && format == "openexr" && like->format == format))
     take_resolution(spec, like->spec);
-  if (like && keep) // JPEG and PNG get it within Exif
+  // JPEG and PNG get it within Exif.
+  if (like && keep && like->spec.find_attribute("Orientation"))
     if (format == "tiff" || format == "openexr")
       spec.attribute("Orientation", like->spec.get_int_attribute("Orientation", 1));
   if (like && format != "openexr") take_profile(spec, like->spec); // EXR has no place for it
-  // EXR's alpha is by definition associated; the values are passed as they are.
-  if (format != "openexr") spec.attribute("oiio:UnassociatedAlpha", 1);
+  // What this says is true already: no value is changed by the writers.
+  if (!premultiplied) spec.attribute("oiio:UnassociatedAlpha", 1);
   if (!lossless(format, compression)) compression = "zip";
   if (format == "tiff" || format == "openexr") spec.attribute("compression", compression);
-  // Without a date OpenEXR's writer puts today's: two runs would differ. It leaves out what is no
-  // text.
+  // Without a date the writers put today's, and two runs would differ. OpenEXR's leaves out what is
+  // no text; TIFF's tag is taken out again by metadata_into_tiff().
   if (format == "openexr" && !spec.find_attribute("DateTime")) spec.attribute("DateTime", 1);
+  if (format == "tiff") spec.attribute("DateTime", "0000:00:00 00:00:00");
   if (format == "jpeg") take_jpeg_settings(spec, like ? &like->spec : nullptr);
   if (format == "webp") spec.attribute("compression", "lossless");
   return spec;
@@ -304,8 +305,8 @@ extern "C" void image_bytes_free(image_bytes *bytes) {
 }
 
 extern "C" image_status image_encode(const recede_view *view, const char *format,
-                                     const image_decoder *like, bool keep, image_bytes *bytes,
-                                     image_message *message) {
+                                     const image_decoder *like, bool premultiplied, bool keep,
+                                     image_bytes *bytes, image_message *message) {
   return guarded(message, [&] {
     auto output = ImageOutput::create(format);
     if (!output)
@@ -313,7 +314,7 @@ extern "C" image_status image_encode(const recede_view *view, const char *format
     Filesystem::IOVecOutput memory;
     if (!output->set_ioproxy(&memory))
       return fail(message, IMAGE_OUTPUT, "this format cannot be written from memory");
-    ImageSpec spec = spec_for(view, format, like, keep);
+    ImageSpec spec = spec_for(view, format, like, premultiplied, keep);
     if (!output->open(std::string("memory.") + format, spec))
       return fail(message, IMAGE_OUTPUT, error_of(output.get(), "the encoder cannot start"));
     bool good = output->write_image(format_of(view->type), view->data, AutoStride,

@@ -112,6 +112,8 @@ image_status image_file_open(const char *path, uint64_t limit, image_file *file,
   if (status != IMAGE_OK) return status;
   image_format_png_header(file->bytes.data, file->bytes.size, &file->info.stored_bits,
                           &file->info.indexed);
+  if (strcmp(file->format->codec, "tiff") == 0)
+    file->info.premultiplied = metadata_tiff_is_premultiplied(file->bytes.data, file->bytes.size);
   status = check_size(file, limit, message);
   bool swap = pixels_turn_swaps(file->info.orientation);
   file->view = (recede_view){NULL,
@@ -279,6 +281,19 @@ static image_status storable(const image_format *format, const recede_view *seen
   return turned.data ? IMAGE_OK : fail(message, IMAGE_NO_MEMORY, "not enough memory to write");
 }
 
+/* EXR knows no other colours with alpha. */
+static image_status premultiply(recede_view *stored, const recede_view *seen,
+                                image_message *message) {
+  if (stored->channels % 2 == 1 || pixels_opaque(stored)) return IMAGE_OK;
+  if (stored->data == seen->data) {
+    *stored = pixels_new(seen->width, seen->height, seen->channels, seen->type);
+    if (!stored->data) return fail(message, IMAGE_NO_MEMORY, "not enough memory to write");
+    pixels_turn(seen, 1, stored);
+  }
+  pixels_premultiply(stored);
+  return IMAGE_OK;
+}
+
 image_status image_file_encode(const char *path, const recede_view *seen, const image_file *like,
                                bool keep, image_bytes *bytes, image_message *message) {
   const image_format *format = image_format_of_name(path);
@@ -288,10 +303,15 @@ image_status image_file_encode(const char *path, const recede_view *seen, const 
   /* A format that cannot carry the tag gets the picture as it is seen. */
   int orientation = keep && metadata_carries_orientation(like, format) ? like->info.orientation : 1;
   image_status status = storable(format, seen, orientation, &stored, message);
+  /* The view's colours are stored the source's way; a JPEG and the like has none to be multiplied.
+   */
+  bool premultiplied = like && like->info.premultiplied;
+  if (status == IMAGE_OK && !premultiplied && strcmp(format->codec, "openexr") == 0)
+    status = premultiply(&stored, seen, message);
   if (status == IMAGE_OK)
-    status =
-        image_encode(&stored, format->codec, like ? like->decoder : NULL, keep, bytes, message);
-  if (status == IMAGE_OK && like) status = metadata_carry(like, format, keep, bytes, message);
+    status = image_encode(&stored, format->codec, like ? like->decoder : NULL, premultiplied, keep,
+                          bytes, message);
+  if (status == IMAGE_OK) status = metadata_carry(like, format, keep, bytes, message);
   if (stored.data != seen->data) free(stored.data);
   return status;
 }

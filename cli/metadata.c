@@ -35,7 +35,10 @@ static void clear(metadata_parts *parts) {
 }
 
 static metadata_parts parts_of(const image_file *from) {
-  metadata_parts parts = {NULL, NULL, NULL, NULL, NULL, from->info.dpi_x, from->info.dpi_y};
+  metadata_parts parts = {NULL};
+  if (!from) return parts;
+  parts.dpi_x = from->info.dpi_x;
+  parts.dpi_y = from->info.dpi_y;
   const char *kind = from->format->codec;
   const uint8_t *bytes = from->bytes.data;
   if (strcmp(kind, "jpeg") == 0) metadata_from_jpeg(bytes, from->bytes.size, &parts);

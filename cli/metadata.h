@@ -8,8 +8,13 @@
 bool metadata_carries_orientation(const image_file *from, const image_format *format);
 
 /* Puts Exif, XMP, IPTC, texts and the resolution of `from` into the bytes of an encoded picture.
- * keep: see image_file_encode(). */
+ * from: NULL for none; what the encoder adds of its own is taken out even then. keep: see
+ * image_file_encode(). */
 image_status metadata_carry(const image_file *from, const image_format *format, bool keep,
                             image_bytes *bytes, image_message *message);
+
+/* A TIFF whose colours are stored multiplied by alpha ("associated"); when it does not say, they
+ * are taken to be plain. */
+bool metadata_tiff_is_premultiplied(const uint8_t *bytes, size_t size);
 
 #endif

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "exif.h"
+#include "metadata.h"
 #include "metadata_parts.h"
 
 static const uint8_t empty_structure[8] = {'I', 'I', '*', 0};
@@ -9,6 +10,17 @@ static const uint8_t empty_structure[8] = {'I', 'I', '*', 0};
 static GByteArray *value_of(const exif_tree *tree, uint16_t tag) {
   const exif_entry *entry = exif_find(tree, EXIF_MAIN, tag);
   return entry ? metadata_copy(entry->value, entry->size) : NULL;
+}
+
+bool metadata_tiff_is_premultiplied(const uint8_t *bytes, size_t size) {
+  exif_tree tree;
+  bool associated = false;
+  if (exif_read(bytes, size, &tree)) {
+    const exif_entry *extra = exif_find(&tree, EXIF_MAIN, 338);
+    associated = extra && extra->type == 3 && extra->value[tree.big_endian ? 1 : 0] == 1;
+  }
+  exif_clear(&tree);
+  return associated;
 }
 
 void metadata_from_tiff(const uint8_t *bytes, size_t size, metadata_parts *parts) {

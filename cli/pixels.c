@@ -148,6 +148,12 @@ void pixels_unpremultiply(const recede_view *view) {
     }
 }
 
+void pixels_premultiply(const recede_view *view) {
+  for (int y = 0; y < view->height; y++)
+    for (int x = 0; x < view->width; x++)
+      scale_colours(view, x, y, pixels_get(view, x, y, view->channels - 1));
+}
+
 void pixels_premultiply_filled(const recede_view *result, const recede_view *original,
                                const recede_view *mask) {
   size_t bytes = (size_t)result->channels * pixels_type_bytes(result->type);

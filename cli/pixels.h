@@ -32,6 +32,7 @@ bool pixels_to_mask(const recede_view *from, const recede_view *to, int *bad_x, 
 
 /* Colours divided by alpha and multiplied again; fully transparent and opaque pixels are left. */
 void pixels_unpremultiply(const recede_view *view);
+void pixels_premultiply(const recede_view *view);
 /* Of a result: where the mask is zero, the original's bits; else its colours times its alpha. */
 void pixels_premultiply_filled(const recede_view *result, const recede_view *original,
                                const recede_view *mask);

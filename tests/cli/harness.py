@@ -1,0 +1,148 @@
+"""What the tests of the command share: running it, pictures made for it, and TAP.
+
+A test file defines functions named test_*; its last line is `harness.main(globals())`. The first
+argument is the command. A test fails by an exception, mostly from check().
+"""
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import traceback
+from pathlib import Path
+
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"
+import cv2  # noqa: E402 - it reads the variable when it is imported
+import numpy as np  # noqa: E402
+
+RECEDE = os.path.abspath(sys.argv[1])
+TEXTURE = Path(__file__).parents[1] / "data" / "brick_regular.png"
+# Generous: a sanitizer's build is twenty times slower than the command.
+TIME_LIMIT_S = 60
+
+
+class Failure(Exception):
+    pass
+
+
+class Skip(Exception):
+    pass
+
+
+def check(condition, *explanation):
+    if not condition:
+        raise Failure(" ".join(str(part) for part in explanation) or "condition not met")
+
+
+def recede(*arguments, code=0, environment=None, prepare=None, limit_s=TIME_LIMIT_S, folder=None):
+    """Runs the command, checks its exit code (None: any), and returns the finished process."""
+    command = [RECEDE, *[os.fspath(a) if isinstance(a, Path) else str(a) for a in arguments]]
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=limit_s, cwd=folder,
+                              env={**os.environ, **(environment or {})}, preexec_fn=prepare,
+                              stdin=subprocess.DEVNULL)
+    except subprocess.TimeoutExpired as late:
+        raise Failure(f"took more than {limit_s} s: {command}") from late
+    text = done.stderr.decode(errors="replace")
+    check("Sanitizer" not in text and "runtime error" not in text, command, text)
+    if code is not None:
+        check(done.returncode == code, command, "ended with", done.returncode, "not", code, text)
+    return done
+
+
+def report_of(*arguments, **options):
+    """The JSON that the command prints for these arguments."""
+    return json.loads(recede(*arguments, "--json", "-", **options).stdout)
+
+
+def texture(height=48, width=64, channels=3, kind="u8"):
+    """A picture with structure at every size; float ones reach below 0 and above 1."""
+    whole = cv2.imread(str(TEXTURE))
+    rgb = cv2.resize(whole, (width, height), interpolation=cv2.INTER_AREA).astype(np.float64) / 255
+    noise = np.random.default_rng(7).normal(0, .02, rgb.shape)
+    colours = rgb + noise
+    if channels < 3:
+        colours = colours[:, :, 1:2]
+    if channels % 2 == 0:
+        colours = np.dstack([colours, np.ones((height, width))])
+    if kind == "u8":
+        made = (colours.clip(0, 1) * 255).round().astype(np.uint8)
+    elif kind == "u16":
+        made = (colours.clip(0, 1) * 65535).round().astype(np.uint16)
+    else:
+        made = (colours * 1.3 - .1).astype(np.float32)
+        if channels % 2 == 0:
+            made[:, :, -1] = 1
+        if kind == "half":
+            made = made.astype(np.float16).astype(np.float32)
+    return made.squeeze()
+
+
+def hole(height=48, width=64, box=(16, 30, 20, 40)):
+    """A mask that is white in rows box[0]..box[1], columns box[2]..box[3]."""
+    mask = np.zeros((height, width), np.uint8)
+    mask[box[0]:box[1], box[2]:box[3]] = 255
+    return mask
+
+
+def write(path, pixels, half=False):
+    """cv2 keeps channels in the order blue, green, red, here and when read again."""
+    parameters = []
+    if path.suffix == ".tif":
+        parameters = [cv2.IMWRITE_TIFF_COMPRESSION, 8]  # cv2's default for floats is lossy
+    if path.suffix == ".exr":
+        parameters = [cv2.IMWRITE_EXR_TYPE,
+                      cv2.IMWRITE_EXR_TYPE_HALF if half else cv2.IMWRITE_EXR_TYPE_FLOAT]
+    if path.suffix == ".jpg":
+        parameters = [cv2.IMWRITE_JPEG_QUALITY, 95]
+    check(cv2.imwrite(str(path), pixels, parameters), "cannot write", path)
+    return path
+
+
+def read(path):
+    flags = cv2.IMREAD_UNCHANGED
+    pixels = cv2.imdecode(np.frombuffer(Path(path).read_bytes(), np.uint8), flags)
+    check(pixels is not None, "not readable:", path)
+    return pixels
+
+
+def same_bits(a, b):
+    return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+
+
+def strays(folder):
+    """Temporary files that were left behind."""
+    return [path for path in Path(folder).rglob(".recede-*")]
+
+
+def run_one(function):
+    folder = Path(tempfile.mkdtemp(prefix="recede-test-"))
+    try:
+        function(folder)
+        left = strays(folder)
+        check(not left, "temporary files left:", left)
+        return None
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def main(names):
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    tests = [value for name, value in names.items() if name.startswith("test_")]
+    print(f"1..{len(tests)}")
+    failed = 0
+    for number, function in enumerate(tests, 1):
+        name = function.__name__[5:].replace("_", " ")
+        try:
+            run_one(function)
+            print(f"ok {number} - {name}", flush=True)
+        except Skip as why:
+            print(f"ok {number} - {name} # SKIP {why}", flush=True)
+        except Exception as error:  # noqa: BLE001 - every fault of a test is its failure
+            failed += 1
+            print(f"not ok {number} - {name}", flush=True)
+            text = str(error) if isinstance(error, Failure) else traceback.format_exc()
+            print("\n".join("# " + line for line in text.splitlines()), flush=True)
+    sys.exit(failed > 0)
