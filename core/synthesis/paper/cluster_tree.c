@@ -9,7 +9,7 @@
 #include "synthesis/paper/settings.h"
 
 /* Lloyd's iterations: the split only has to be fair, and the first few do nearly all of it. */
-#define LLOYD_ITERATIONS 5
+#define LLOYD_ITERATIONS 8
 /* Members whose vectors are equal need not all be compared. */
 #define ALIKE_COMPARED 4
 

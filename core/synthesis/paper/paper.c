@@ -76,9 +76,28 @@ recede_status rc_synthesize_paper(rc_context *context, const rc_image *exemplar,
   return RECEDE_OK;
 }
 
-/* Measured on fills and syntheses of 64 to 1000 px: see tests/unit/paper.c. */
+/* Bytes of the largest tree: members' vectors, two nodes a member with a centroid each; or, in the
+ * raw space of the baseline, few nodes with long centroids. */
+static uint64_t bytes_of_tree(uint64_t pixels, const rc_paper_settings *settings, int channels) {
+  uint64_t most = settings->pca ? RC_MOST_MEMBERS : RC_MOST_RAW_MEMBERS;
+  uint64_t members = pixels < most ? pixels : most, widest = (uint64_t)settings->widths[0];
+  uint64_t nodes = settings->tree_stop > 0 ? 4096 : 2 * members;
+  uint64_t inputs = (settings->pca ? 64 : widest * widest) * (uint64_t)channels + 16;
+  uint64_t vectors = settings->pca ? members + 2 * 2048 : 64;
+  uint64_t eigen = settings->pca ? 2 * 8 * (inputs + 4) * (inputs + 4) : 0;
+  return 4 * inputs * (vectors + (nodes < 2 * members ? nodes : 2 * members) + 64) + members * 24 +
+         nodes * 24 + eigen;
+}
+
+/* exemplar_pixels: of both sides, and as many again in the coarser levels. */
 uint64_t rc_paper_bytes(uint64_t exemplar_pixels, uint64_t target, int channels,
                         const recede_params *params) {
-  (void)params;
-  return (exemplar_pixels + target) * (uint64_t)channels * 64 + ((uint64_t)100 << 20);
+  rc_paper_settings settings = rc_paper_settings_of(params);
+  uint64_t narrow = (uint64_t)settings.widths[settings.width_count - 1];
+  uint64_t step = narrow >= 4 ? narrow / 4 : 1, wide = (uint64_t)channels + settings.scale_channel;
+  uint64_t pyramid = 4 * (uint64_t)channels + 1 + (settings.scale_channel ? 6 * wide : 0);
+  uint64_t matches = 48 / (step * step) + 1, start = settings.levels < 2 ? 16 : 4;
+  (void)target;
+  return exemplar_pixels * (pyramid + matches + start + 4) + ((uint64_t)2 << 20) +
+         bytes_of_tree(exemplar_pixels, &settings, (int)wide);
 }

@@ -8,11 +8,7 @@
 #include "synthesis/paper/scale_channel.h"
 
 /* Price of another scale: an octave costs this part of the exemplar's variance per value. */
-#define SCALE_PRICE .3f
-/* Neighbourhoods in the tree, at most: more cost time and memory, and coherence reaches the others.
- * Vectors of the raw space are long. */
-#define MOST_MEMBERS 24576
-#define MOST_RAW_MEMBERS 8192
+#define SCALE_PRICE 2.f
 /* Floor of ||x_p - z_p||^2 per value in eq. 7, in parts of the variance: exact copies of the
  * exemplar must not weigh infinitely more than all others. */
 #define LEAST_DISTANCE 1e-3f
@@ -58,7 +54,7 @@ static recede_status build_tree(rc_context *context, rc_paper_search *search, ui
   const rc_paper_settings *settings = search->settings;
   int count;
   RC_TRY(rc_windows_sample(context, &search->windows,
-                           settings->pca ? MOST_MEMBERS : MOST_RAW_MEMBERS, key + 1,
+                           settings->pca ? RC_MOST_MEMBERS : RC_MOST_RAW_MEMBERS, key + 1,
                            &search->members, &count));
   rc_points points = {search, read_vector, count, search->space.dims};
   search->tree.points = points;

@@ -8,6 +8,10 @@
 
 #define RC_PAPER_MAX_LEVELS 10
 #define RC_TREE_BRANCHES 4 /* k of the k-means tree */
+/* Neighbourhoods in the tree, at most: more cost time and memory, and coherence reaches the others.
+ * Without PCA their vectors are long. */
+#define RC_MOST_MEMBERS 24576
+#define RC_MOST_RAW_MEMBERS 8192
 
 typedef struct rc_paper_settings {
   int levels;    /* pyramid levels, the finest included */
