@@ -10,5 +10,8 @@
 
 /* Catalogues lie in locale/ beside the executable (a user's folder), else in the system's place. */
 void rp_translations_start(const char *executable);
+/* A file or folder of the plug-in's own, beside the executable; NULL when it is not there (free).
+ */
+char *rp_own_file(const char *executable, const char *name);
 
 #endif

@@ -40,6 +40,12 @@ static GimpPDBArgType type_of(const rp_argument *row) {
   }
 }
 
+static void register_icon(const char *procedure) {
+  char *icon = rp_own_file(gimp_get_progname(), "recede.svg");
+  if (icon) gimp_plugin_icon_register(procedure, GIMP_ICON_TYPE_IMAGE_FILE, (const guint8 *)icon);
+  g_free(icon);
+}
+
 static void install(rp_procedure procedure) {
   GimpParamDef definitions[FIXED_ARGUMENTS + RP_MAX_ARGUMENTS] = {
       {GIMP_PDB_INT32, "run-mode",
@@ -61,12 +67,22 @@ static void install(rp_procedure procedure) {
                          procedure == RP_SYNTHESIZE ? &new_image : NULL);
   gimp_plugin_menu_register(name, procedure == RP_FILL ? "<Image>/Filters/Enhance"
                                                        : "<Image>/Filters/Render/Pattern");
+  register_icon(name);
   for (int i = 0; i < count; i++) g_free(definitions[FIXED_ARGUMENTS + i].description);
+}
+
+static void register_help(void) {
+  char *folder = rp_own_file(gimp_get_progname(), "help");
+  char *uri = folder ? g_filename_to_uri(folder, NULL, NULL) : NULL;
+  if (uri) gimp_plugin_help_register("recede-help", uri);
+  g_free(uri);
+  g_free(folder);
 }
 
 static void query(void) {
   rp_translations_start(gimp_get_progname());
   gimp_plugin_domain_register(RP_DOMAIN, bindtextdomain(RP_DOMAIN, NULL));
+  register_help();
   for (int i = 0; i < RP_PROCEDURES; i++) install((rp_procedure)i);
 }
 

@@ -25,9 +25,18 @@ static gboolean set_i18n(GimpPlugIn *plug_in, const gchar *procedure_name, gchar
   return FALSE;
 }
 
+static GFile *own_file(const char *name) {
+  char *path = rp_own_file(gimp_get_progname(), name);
+  GFile *file = path ? g_file_new_for_path(path) : NULL;
+  g_free(path);
+  return file;
+}
+
 static GList *query_procedures(GimpPlugIn *plug_in) {
   GList *names = NULL;
-  (void)plug_in;
+  GFile *help = own_file("help");
+  if (help) gimp_plug_in_set_help_domain(plug_in, "recede-help", help);
+  g_clear_object(&help);
   for (int i = 0; i < RP_PROCEDURES; i++)
     names = g_list_append(names, g_strdup(rp_procedure_name((rp_procedure)i)));
   return names;
@@ -84,6 +93,9 @@ static GimpProcedure *create_procedure(GimpPlugIn *plug_in, const gchar *name) {
                                    _(rp_procedure_help(which)), name);
   gimp_procedure_set_attribution(procedure, "The Recede developers", "The Recede developers",
                                  "2026");
+  GFile *icon = own_file("recede.svg");
+  if (icon) gimp_procedure_set_icon_file(procedure, icon);
+  g_clear_object(&icon);
   rp_add_arguments(procedure, which);
   if (which == RP_SYNTHESIZE)
     gimp_procedure_add_image_return_value(procedure, "new-image", _("New image"),

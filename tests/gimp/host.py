@@ -38,7 +38,8 @@ PRELUDE = {
 }
 SYSTEM_PLUGINS = {"2": "/usr/lib/gimp/2.0/plug-ins",
                   "3": "/usr/lib/x86_64-linux-gnu/gimp/3.0/plug-ins"}
-NEEDED = ["script-fu", "file-png", "file-compressor", "file-tiff", "script-fu-server", "file-jpeg"]
+NEEDED = ["script-fu", "file-png", "file-compressor", "file-tiff", "script-fu-server", "file-jpeg",
+          "file-glob"]
 
 
 def choice(key, value):

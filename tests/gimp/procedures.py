@@ -98,7 +98,6 @@ def errors(host):
     """(name, script after i and d are there, words that the message must have)."""
     select = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE 20 20 20 20)"
     frontal = {"orientation": "frontal"}
-    lock = ("gimp-item-set-lock-content")
     yield "no selection", host.fill(**frontal), "Nothing is selected"
     yield ("a selection outside the layer",
            select + "(gimp-layer-set-offsets d 200 200)" + host.fill(**frontal), "outside the layer")
@@ -108,10 +107,12 @@ def errors(host):
            + host.fill(layer="g", **frontal), "layer group")
     yield ("indexed", select + "(gimp-image-convert-indexed i CONVERT-DITHER-NONE"
            ' CONVERT-PALETTE-GENERATE 16 FALSE FALSE "")' + host.fill(**frontal), "indexed")
-    yield ("locked", f"({lock} d TRUE)" + select + host.fill(**frontal), "locked")
-    yield ("floating", select + ("(gimp-selection-float d 0 0)" if host.name == "2" else
-                                 "(gimp-selection-float (vector d) 0 0)")
-           + host.fill(layer="(t-layer i)", **frontal), "loating selection|Nothing is selected")
+    yield ("locked", "(gimp-item-set-lock-content d TRUE)" + select + host.fill(**frontal), "locked")
+    yield ("floating", select + ("(gimp-edit-copy d)(define f (car (gimp-edit-paste d TRUE)))"
+                                 if host.name == "2" else
+                                 "(gimp-edit-copy (vector d))"
+                                 "(define f (vector-ref (car (gimp-edit-paste d TRUE)) 0))")
+           + host.fill(layer="f", **frontal), "floating selection")
     yield ("beyond the horizon", select + host.fill(orientation="angles", slant=130),
            "beyond the horizon")
     yield ("slant out of range", select + host.fill(orientation="angles", slant=190), "slant.*190|190.*slant|out of range")
