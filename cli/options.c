@@ -79,8 +79,8 @@ static const char *keep(GStringChunk *kept, char *text) {
 }
 
 /* The rows of the table that are options; the source of the orientation follows from which of them
- * are given. orientation: those of the orientation, or the others. GOption keeps pointers: kept must
- * live as long as the group. */
+ * are given. orientation: those of the orientation, or the others. GOption keeps pointers: kept
+ * must live as long as the group. */
 static void add_params(GOptionGroup *group, bool orientation, GStringChunk *kept) {
   static const char *const of_orientation[] = {"slant", "tilt", "fov", "horizon", "quad", NULL};
   size_t rows;

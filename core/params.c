@@ -12,9 +12,12 @@
 #define N_(text) text
 
 static const char *const orientations[] = {"auto", "angles", "frontal", "horizon", "quad", NULL};
-static const char *const orientation_labels[] = {
-    N_("Estimate from the picture"), N_("Slant and tilt"), N_("Frontal (no perspective)"),
-    N_("Horizon line"), N_("Four points"), NULL};
+static const char *const orientation_labels[] = {N_("Estimate from the picture"),
+                                                 N_("Slant and tilt"),
+                                                 N_("Frontal (no perspective)"),
+                                                 N_("Horizon line"),
+                                                 N_("Four points"),
+                                                 NULL};
 static const char *const surfaces[] = {"flat", "raised", "auto", NULL};
 static const char *const surface_labels[] = {N_("Flat pattern (tiles, planks, markings)"),
                                              N_("Raised (stones, grass, waves)"),
@@ -28,16 +31,20 @@ static const char *const quality_labels[] = {N_("Draft"), N_("Normal"), N_("Best
 
 #define COMMON (RECEDE_PARAM_COMMAND | RECEDE_PARAM_HOST)
 #define AT(field) offsetof(recede_params, field)
-#define CHOICE(key, field, label, help, first, nicks, labels, flags)                          \
-  {key, label, help, "", RECEDE_PARAM_CHOICE, 0, sizeof nicks / sizeof *nicks - 2, first, nicks, \
-   labels, flags, 1, AT(field)}
+#define CHOICE(key, field, label, help, first, nicks, labels, flags)                              \
+  {                                                                                               \
+    key, label, help, "", RECEDE_PARAM_CHOICE, 0, sizeof nicks / sizeof *nicks - 2, first, nicks, \
+        labels, flags, 1, AT(field)                                                               \
+  }
 #define DOUBLE(key, field, label, help, unit, low, high, value, flags) \
-  {key, label, help, unit, RECEDE_PARAM_DOUBLE, low, high, value, NULL, NULL, flags, 1, AT(field)}
+  { key, label, help, unit, RECEDE_PARAM_DOUBLE, low, high, value, NULL, NULL, flags, 1, AT(field) }
 #define INT(key, field, label, help, low, high, value, flags) \
-  {key, label, help, "", RECEDE_PARAM_INT, low, high, value, NULL, NULL, flags, 1, AT(field)}
-#define POINTS(key, field, label, help, n) \
-  {key, label, help, "px", RECEDE_PARAM_POINTS, -1e7, 1e7, 0, NULL, NULL, RECEDE_PARAM_COMMAND, n, \
-   AT(field)}
+  { key, label, help, "", RECEDE_PARAM_INT, low, high, value, NULL, NULL, flags, 1, AT(field) }
+#define POINTS(key, field, label, help, n)                                                       \
+  {                                                                                              \
+    key, label, help, "px", RECEDE_PARAM_POINTS, -1e7, 1e7, 0, NULL, NULL, RECEDE_PARAM_COMMAND, \
+        n, AT(field)                                                                             \
+  }
 #define STAGE(key, field, help) INT(key, field, "", help, 0, 1, 1, RECEDE_PARAM_DEVELOPER)
 
 static const recede_param_info table[] = {
@@ -48,9 +55,10 @@ static const recede_param_info table[] = {
            N_("Angle between the view axis and the plane's normal: 0 is seen from the front; above "
               "90 the image's centre lies beyond the horizon"),
            "°", 0, 179.9, 45, COMMON),
-    DOUBLE("tilt", tilt_deg, N_("_Tilt"),
-           N_("Direction in which the plane recedes, clockwise from up: 0 a floor, 90 to the right"),
-           "°", -180, 180, 0, COMMON),
+    DOUBLE(
+        "tilt", tilt_deg, N_("_Tilt"),
+        N_("Direction in which the plane recedes, clockwise from up: 0 a floor, 90 to the right"),
+        "°", -180, 180, 0, COMMON),
     DOUBLE("fov", fov_deg, N_("_Field of view"),
            N_("Field of view of the picture's long side; it matters little"), "°", 1, 170, 50,
            COMMON),
@@ -65,8 +73,8 @@ static const recede_param_info table[] = {
     POINTS("horizon", horizon, N_("Horizon"), N_("Two points of the horizon: X1,Y1,X2,Y2"), 4),
     POINTS("quad", quad, N_("Quad"),
            N_("Four corners of a rectangle on the plane: X1,Y1,X2,Y2,X3,Y3,X4,Y4"), 8),
-    INT("paper-literal", paper_literal, "",
-        N_("Method paper as printed, without the repairs"), 0, 1, 0, RECEDE_PARAM_COMMAND),
+    INT("paper-literal", paper_literal, "", N_("Method paper as printed, without the repairs"), 0,
+        1, 0, RECEDE_PARAM_COMMAND),
     INT("paper-levels", paper_levels, "", "pyramid levels; 0: 3 literal, 4 repaired", 0, 8, 0,
         RECEDE_PARAM_DEVELOPER),
     INT("paper-width", paper_width, "", "neighbourhood at the finest level, px; 0: 8", 0, 32, 0,
@@ -157,8 +165,7 @@ static recede_status refuse(char *message, size_t size, const recede_param_info 
   if (row->type == RECEDE_PARAM_CHOICE) {
     int used = snprintf(message, size, "%s: '%s' is not one of", row->key, value);
     for (int i = 0; row->choices[i] && used > 0 && (size_t)used < size; i++)
-      used += snprintf(message + used, size - (size_t)used, "%s %s", i ? "," : "",
-                       row->choices[i]);
+      used += snprintf(message + used, size - (size_t)used, "%s %s", i ? "," : "", row->choices[i]);
   } else if (row->type == RECEDE_PARAM_POINTS) {
     snprintf(message, size, "%s: '%s' is not %d numbers separated by commas, each within %g..%g",
              row->key, value, row->count, row->minimum, row->maximum);

@@ -93,8 +93,7 @@ static recede_status begin(recede_job *job) {
   context->report.seed = job->params.seed;
   context->report.method = job->params.method;
   context->report.surface = job->params.surface;
-  if (!job->image.data)
-    return rc_fail(context, RECEDE_ARGUMENT, "No image was given.");
+  if (!job->image.data) return rc_fail(context, RECEDE_ARGUMENT, "No image was given.");
   return RECEDE_OK;
 }
 
@@ -138,8 +137,8 @@ static recede_status estimate_orientation(recede_job *job, double fov_deg, const
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_stage(context, "orientation", 0, .03));
   RC_TRY(rc_shrink(context, &views, factor, &image, &flags));
-  RC_TRY(rc_estimate_plane(context, &image, &flags, fov_deg, on ? small_on : NULL, plane,
-                           confidence));
+  RC_TRY(
+      rc_estimate_plane(context, &image, &flags, fov_deg, on ? small_on : NULL, plane, confidence));
   rc_release(context, mark);
   plane->focal_px *= (double)longest / (image.width > image.height ? image.width : image.height);
   plane->width = job->image.width;
@@ -174,8 +173,8 @@ static recede_status resolve_plane(recede_job *job, int width, int height, doubl
                                                   on_y, plane),
                         "horizon");
     case RECEDE_ORIENTATION_QUAD:
-      return degenerate(
-          job, recede_plane_from_quad(width, height, p->fov_deg, p->quad, 1, plane), "quad");
+      return degenerate(job, recede_plane_from_quad(width, height, p->fov_deg, p->quad, 1, plane),
+                        "quad");
     default: break;
   }
   orientation->estimated = 1;
@@ -197,10 +196,11 @@ static recede_status fall_back(recede_job *job, recede_status status,
   if (!orientation->estimated) return status;
   if (status != RECEDE_OK && status != RECEDE_NO_PLANE) return status;
   if (status == RECEDE_OK && orientation->confidence >= RECEDE_CONFIDENCE_LOW) return RECEDE_OK;
-  rc_warn(&job->context,
-          "The orientation could not be read from the picture with confidence (%.2f); it was filled "
-          "without perspective. Give slant and tilt, or a horizon.",
-          status == RECEDE_OK ? orientation->confidence : 0.);
+  rc_warn(
+      &job->context,
+      "The orientation could not be read from the picture with confidence (%.2f); it was filled "
+      "without perspective. Give slant and tilt, or a horizon.",
+      status == RECEDE_OK ? orientation->confidence : 0.);
   if (status != RECEDE_OK) orientation->confidence = 0;
   return recede_plane_from_angles(job->image.width, job->image.height, 0, 0, job->params.fov_deg,
                                   &orientation->plane);
@@ -276,8 +276,8 @@ recede_status recede_job_estimate_fill(recede_job *job, uint64_t *bytes, double 
 
 static recede_status check_result(recede_job *job, const recede_view *result, bool same_size) {
   RC_TRY(rc_view_check(&job->context, result, "Result", job->image.channels));
-  if (result->type != job->image.type || (same_size && (result->width != job->image.width ||
-                                                        result->height != job->image.height)))
+  if (result->type != job->image.type ||
+      (same_size && (result->width != job->image.width || result->height != job->image.height)))
     return rc_fail(&job->context, RECEDE_ARGUMENT, "Result: its %s must be the image's.",
                    result->type != job->image.type ? "type" : "size");
   return RECEDE_OK;
@@ -300,7 +300,8 @@ static void blend_pixel(const recede_view *result, int x, int y, const float *fi
   float new_alpha = amount + old_alpha * (1 - amount);
   for (int k = 0; k < colours; k++) {
     float old = isfinite(pixel[k]) && old_alpha > 0 ? pixel[k] : fill[k];
-    pixel[k] = amount >= 1 ? fill[k] : (fill[k] * amount + old * old_alpha * (1 - amount)) / new_alpha;
+    pixel[k] =
+        amount >= 1 ? fill[k] : (fill[k] * amount + old * old_alpha * (1 - amount)) / new_alpha;
   }
   if (alpha) pixel[colours] = new_alpha;
   rc_view_write(result, x, y, 1, pixel);
@@ -341,10 +342,10 @@ static recede_status fill(recede_job *job, const recede_view *result) {
   RC_TRY(rc_stage(context, "prepare", 0, .01));
   RC_TRY(check_result(job, result, true));
   RC_TRY(plan_fill(job, &summary));
-  RC_TRY(fall_back(job,
-                   resolve_plane(job, job->image.width, job->image.height, summary.x, summary.y,
-                                 orientation),
-                   orientation));
+  RC_TRY(fall_back(
+      job,
+      resolve_plane(job, job->image.width, job->image.height, summary.x, summary.y, orientation),
+      orientation));
   describe(orientation);
   RC_TRY(rc_stage(context, "prepare", .03, .05));
   rc_views views = views_of(job);
@@ -438,7 +439,8 @@ static recede_status synthesize(recede_job *job, const recede_view *result) {
                    resolve_plane(job, framed->width, framed->height, (framed->width - 1) / 2.,
                                  (framed->height - 1) / 2., orientation),
                    orientation));
-  if (in_plane) orientation->plane.width = result->width, orientation->plane.height = result->height;
+  if (in_plane)
+    orientation->plane.width = result->width, orientation->plane.height = result->height;
   describe(orientation);
   RC_TRY(rc_stage(context, "prepare", .03, .05));
   RC_TRY(in_plane ? synthesize_in_plane(job, &orientation->plane, result)

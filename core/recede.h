@@ -1,8 +1,8 @@
 /* recede.h - perspective texture synthesis: the one public header of librecede.
  *
- * What it does. Fills a region of a picture of a receding plane (a street, a floor, a beach) so that
- * the texture gets smaller towards the horizon, or makes a larger picture of such a plane from an
- * exemplar.
+ * What it does. Fills a region of a picture of a receding plane (a street, a floor, a beach) so
+ * that the texture gets smaller towards the horizon, or makes a larger picture of such a plane from
+ * an exemplar.
  *
  * How it is used.
  *     recede_job *job = recede_job_new(NULL);
@@ -21,8 +21,8 @@
  * from up (0 a floor, 90 recedes to the right, 180 a ceiling). Field of view: across the long side.
  * Threads. Different jobs may be used in different threads; one job is not thread-safe, except for
  * recede_job_cancel(). The same input gives the same bytes for any number of threads.
- * Errors. On any status but RECEDE_OK the output is unchanged and recede_job_message() tells why and
- * what to do. The library never prints, aborts, exits or changes the locale.
+ * Errors. On any status but RECEDE_OK the output is unchanged and recede_job_message() tells why
+ * and what to do. The library never prints, aborts, exits or changes the locale.
  */
 #ifndef RECEDE_H
 #define RECEDE_H
@@ -166,17 +166,17 @@ typedef struct recede_params {
   int paper_literal; /* 1: the paper as printed; 0: repaired (docs in core/synthesis/paper) */
   /* Developers' parameters: 0 switches a stage off or, where the table says so, means "by
    * quality". */
-  int paper_levels;         /* pyramid levels; 0: by paper_literal */
-  int paper_width;          /* neighbourhood at the finest level, px; 0: by paper_literal */
-  int paper_width_coarse;   /* and at the coarser ones */
-  int paper_coherence;      /* -1: by paper_literal */
-  int paper_scale_in_pca;   /* -1: by paper_literal */
+  int paper_levels;            /* pyramid levels; 0: by paper_literal */
+  int paper_width;             /* neighbourhood at the finest level, px; 0: by paper_literal */
+  int paper_width_coarse;      /* and at the coarser ones */
+  int paper_coherence;         /* -1: by paper_literal */
+  int paper_scale_in_pca;      /* -1: by paper_literal */
   double paper_histogram_gain; /* eq. 9's sum times this; -1: by paper_literal */
-  double paper_exponent;    /* r of eq. 5 */
-  int paper_iterations;     /* of one sweep, at most; 0: by method */
+  double paper_exponent;       /* r of eq. 5 */
+  int paper_iterations;        /* of one sweep, at most; 0: by method */
   int engine_tone, engine_periods, engine_coherence, engine_confidence, engine_composition,
       engine_join, engine_detail, engine_spline; /* stages of the plane engine, 1 = on */
-  int engine_iterations;    /* EM iterations at the coarsest level; 0: by quality */
+  int engine_iterations; /* EM iterations at the coarsest level; 0: by quality */
 } recede_params;
 
 typedef enum recede_param_type {
@@ -256,15 +256,15 @@ typedef struct recede_report {
     double seconds;
   } stages[RECEDE_MAX_STAGES];
   uint64_t estimated_bytes, peak_bytes;
-  uint64_t output_hash;       /* of the result's pixel values, the same on every machine */
-  uint64_t filled_pixels;     /* target pixels that were filled */
-  uint64_t refused_pixels;    /* target pixels on or beyond the horizon: left as they were */
-  uint64_t magnified_pixels;  /* filled from a source of less than .8 of the resolution needed */
+  uint64_t output_hash;      /* of the result's pixel values, the same on every machine */
+  uint64_t filled_pixels;    /* target pixels that were filled */
+  uint64_t refused_pixels;   /* target pixels on or beyond the horizon: left as they were */
+  uint64_t magnified_pixels; /* filled from a source of less than .8 of the resolution needed */
   double largest_magnification;
-  uint64_t nonfinite_pixels;  /* NaN or infinite input pixels, never a source */
-  double energy;              /* methods paper and kwatra: the last energy, eq. 8 */
+  uint64_t nonfinite_pixels; /* NaN or infinite input pixels, never a source */
+  double energy;             /* methods paper and kwatra: the last energy, eq. 8 */
   int iterations;
-  char warning[512];          /* "" or sentences to show the user, English */
+  char warning[512]; /* "" or sentences to show the user, English */
 } recede_report;
 
 typedef struct recede_job recede_job;
@@ -298,7 +298,8 @@ RECEDE_API recede_status recede_job_synthesize(recede_job *job, const recede_vie
 RECEDE_API const recede_report *recede_job_report(const recede_job *job);
 /* Why the last call failed and what to do, English, one line; "" after RECEDE_OK. */
 RECEDE_API const char *recede_job_message(const recede_job *job);
-/* Makes a running call return RECEDE_CANCELLED soon. Safe from other threads and signal handlers. */
+/* Makes a running call return RECEDE_CANCELLED soon. Safe from other threads and signal handlers.
+ */
 RECEDE_API void recede_job_cancel(recede_job *job);
 RECEDE_API void recede_job_free(recede_job **job);
 

@@ -99,8 +99,7 @@ static recede_status ask_host(rc_context *context) {
 }
 
 recede_status rc_progress(rc_context *context, double fraction) {
-  double now =
-      context->fraction_from + fraction * (context->fraction_to - context->fraction_from);
+  double now = context->fraction_from + fraction * (context->fraction_to - context->fraction_from);
   if (now > context->fraction) context->fraction = fmin(now, 1);
   return fraction == 0 ? ask_host(context) : rc_poll(context);
 }

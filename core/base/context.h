@@ -26,9 +26,9 @@ typedef struct rc_context {
 
 /* Passes any status but RECEDE_OK on to the caller. Memory needs no clean-up on the way: it belongs
  * to the context (base/memory.h). */
-#define RC_TRY(expression)                     \
-  do {                                         \
-    recede_status rc_status_ = (expression);   \
+#define RC_TRY(expression)                          \
+  do {                                              \
+    recede_status rc_status_ = (expression);        \
     if (rc_status_ != RECEDE_OK) return rc_status_; \
   } while (0)
 

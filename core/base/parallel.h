@@ -1,6 +1,6 @@
-/* The only file that knows threads. Plain pthreads that sleep while there is nothing to do: OpenMP's
- * spinning threads cost seconds on a loaded machine, and its races cannot be told from false ones by
- * ThreadSanitizer. */
+/* The only file that knows threads. Plain pthreads that sleep while there is nothing to do:
+ * OpenMP's spinning threads cost seconds on a loaded machine, and its races cannot be told from
+ * false ones by ThreadSanitizer. */
 #ifndef RECEDE_BASE_PARALLEL_H
 #define RECEDE_BASE_PARALLEL_H
 

@@ -1,5 +1,5 @@
-/* exp2 and log2 with the same bits on every machine: the C library's choose other code by processor.
- * Good to a float's precision. */
+/* exp2 and log2 with the same bits on every machine: the C library's choose other code by
+ * processor. Good to a float's precision. */
 #ifndef RECEDE_BASE_REAL_H
 #define RECEDE_BASE_REAL_H
 
@@ -26,8 +26,9 @@ static inline float rc_exp2(float v) {
   if (v > 127.f) v = 127.f;
   int whole = (int)(v + (v < 0.f ? -.5f : .5f));
   double f = ((double)v - whole) * 0.69314718055994531;
-  double e = 1. + f * (1. + f / 2 * (1. + f / 3 * (1. + f / 4 * (1. + f / 5 * (1. + f / 6 *
-             (1. + f / 7))))));
+  double e =
+      1. +
+      f * (1. + f / 2 * (1. + f / 3 * (1. + f / 4 * (1. + f / 5 * (1. + f / 6 * (1. + f / 7))))));
   uint32_t bits = (uint32_t)(whole + 127) << 23;
   float power;
   memcpy(&power, &bits, 4);

@@ -1,5 +1,5 @@
-/* Pixels inside the core: floats, interleaved, 1 or 3 colour channels; and one byte a pixel for what
- * a pixel is. */
+/* Pixels inside the core: floats, interleaved, 1 or 3 colour channels; and one byte a pixel for
+ * what a pixel is. */
 #ifndef RECEDE_IMAGE_IMAGE_H
 #define RECEDE_IMAGE_IMAGE_H
 

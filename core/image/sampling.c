@@ -34,7 +34,8 @@ static int clamp(int v, int count) { return v < 0 ? 0 : v >= count ? count - 1 :
 
 void rc_sample(const rc_sampler *sampler, const rc_image *image, float x, float y, float *value) {
   int channels = image->channels, reach = RC_SPLINE_TAPS / 2 - 1;
-  int fixed_x = (int)floorf(x * RC_SPLINE_STEPS + .5f), fixed_y = (int)floorf(y * RC_SPLINE_STEPS + .5f);
+  int fixed_x = (int)floorf(x * RC_SPLINE_STEPS + .5f),
+      fixed_y = (int)floorf(y * RC_SPLINE_STEPS + .5f);
   int step_x = fixed_x & (RC_SPLINE_STEPS - 1), step_y = fixed_y & (RC_SPLINE_STEPS - 1);
   int ix = (fixed_x - step_x) / RC_SPLINE_STEPS, iy = (fixed_y - step_y) / RC_SPLINE_STEPS;
   if (!step_x && !step_y) {

@@ -55,8 +55,9 @@ static void add_row(block_sum *sums, int factor, int width, int channels, const 
 
 static void finish_block(const block_sum *sum, int pixels, int colours, float *pixel,
                          uint8_t *flags) {
-  *flags = sum->targets ? RC_TARGET
-           : (uint8_t)((sum->known ? RC_KNOWN : 0) | (sum->sources == pixels ? RC_SOURCE : 0));
+  *flags = sum->targets
+               ? RC_TARGET
+               : (uint8_t)((sum->known ? RC_KNOWN : 0) | (sum->sources == pixels ? RC_SOURCE : 0));
   for (int k = 0; k < colours && sum->known; k++) pixel[k] = sum->colour[k] / (float)sum->known;
 }
 

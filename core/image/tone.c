@@ -69,7 +69,8 @@ static recede_status mean_only(rc_context *context, const rc_image *cells, rc_to
   double sum[4] = {0, 0, 0, 0};
   int channels = cells->channels - 1;
   for (size_t i = 0; i < (size_t)cells->width * (size_t)cells->height; i++)
-    for (int k = 0; k <= channels; k++) sum[k] += cells->data[i * (size_t)cells->channels + (size_t)k];
+    for (int k = 0; k <= channels; k++)
+      sum[k] += cells->data[i * (size_t)cells->channels + (size_t)k];
   RC_TRY(rc_image_new(context, 1, 1, channels, &tone->base));
   for (int k = 0; k < channels; k++)
     tone->base.data[k] = sum[channels] > 0 ? (float)(sum[k] / sum[channels]) : 0;

@@ -1,5 +1,5 @@
-/* The one vector source, built once for each instruction set with RC_KERNELS_NAME saying which: plain
- * loops over fixed lanes that the compiler turns into vectors. */
+/* The one vector source, built once for each instruction set with RC_KERNELS_NAME saying which:
+ * plain loops over fixed lanes that the compiler turns into vectors. */
 #include "kernels/kernels.h"
 
 #define RC_STRING_(name) #name

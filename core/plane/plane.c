@@ -1,6 +1,6 @@
 /* One plane, many ways to say it: slant and tilt, a horizon line, a quad.
- * With the ray r(x, y) = ((x - cx) / f, (y - cy) / f, 1) and the plane's unit normal n, the depth is
- * proportional to 1 / (n . r): everything below is this one fact. */
+ * With the ray r(x, y) = ((x - cx) / f, (y - cy) / f, 1) and the plane's unit normal n, the depth
+ * is proportional to 1 / (n . r): everything below is this one fact. */
 #include <math.h>
 #include <string.h>
 
@@ -88,10 +88,11 @@ static int convex(const double quad[8]) {
 }
 
 /* The focal length at which the vanishing points of two directions are at right angles seen from
- * the camera: v1 . v2 + f^2 = 0 about the principal point. 0 when a point is (almost) at infinity or
- * no real f exists. */
+ * the camera: v1 . v2 + f^2 = 0 about the principal point. 0 when a point is (almost) at infinity
+ * or no real f exists. */
 static double focal_of_right_angle(const double v1[3], const double v2[3], double size) {
-  if (fabs(v1[2]) * 50 * size < hypot(v1[0], v1[1]) || fabs(v2[2]) * 50 * size < hypot(v2[0], v2[1]))
+  if (fabs(v1[2]) * 50 * size < hypot(v1[0], v1[1]) ||
+      fabs(v2[2]) * 50 * size < hypot(v2[0], v2[1]))
     return 0;
   double square = -(v1[0] * v2[0] + v1[1] * v2[1]) / (v1[2] * v2[2]);
   double focal = square > 0 ? sqrt(square) : 0;

@@ -7,8 +7,8 @@
 
 /* The join keeps to the copies within 1 / sqrt(.02) = 7 px of a seam. */
 #define SCREENING .02f
-/* Red-black over-relaxation: the Jacobi radius is 4 / 4.02, the best factor 1.82, and 40 sweeps leave
- * .82^40 = .0004 of the error. */
+/* Red-black over-relaxation: the Jacobi radius is 4 / 4.02, the best factor 1.82, and 40 sweeps
+ * leave .82^40 = .0004 of the error. */
 #define RELAXATION 1.82f
 #define SWEEPS 40
 /* Sources finer than this many px per px are sampled one level coarser. */
@@ -32,8 +32,7 @@ static const int step_x[4] = {-1, 1, 0, 0}, step_y[4] = {0, 0, -1, 1};
 /* The texture that a copy puts at (x, y). */
 static void copy_value(const composition *c, rc_copy copy, int x, int y, float *value) {
   const rc_chart *chart = &c->level->chart;
-  rc_place place =
-      rc_copy_place(chart, copy, rc_level_x(c->level, x), rc_level_y(c->level, y));
+  rc_place place = rc_copy_place(chart, copy, rc_level_x(c->level, x), rc_level_y(c->level, y));
   float sx = place.x + chart->x0, sy = place.y + chart->y0, finer = place.ratio;
   int mip = 0;
   for (; mip + 1 < c->mip_count && finer > MIP_AT; mip++, finer *= .5f)
@@ -57,7 +56,8 @@ static void sample_row(void *user, int item, int thread) {
   }
 }
 
-/* Adds what the edge to (nx, ny) asks of pixel (x, y) beyond what the copies' values give already. */
+/* Adds what the edge to (nx, ny) asks of pixel (x, y) beyond what the copies' values give already.
+ */
 static void add_edge(const composition *c, int x, int y, int nx, int ny, const float *value,
                      float *drive) {
   const rc_level *level = c->level;
@@ -137,8 +137,12 @@ static recede_status solve_join(rc_context *context, composition *c) {
 
 recede_status rc_compose(rc_context *context, const rc_level *level, const rc_sampler *sampler,
                          const rc_image *mips, int mip_count, bool join, rc_image *residual) {
-  composition c = {.level = level, .sampler = sampler, .mips = mips, .mip_count = mip_count,
-                   .channels = residual->channels, .residual = residual};
+  composition c = {.level = level,
+                   .sampler = sampler,
+                   .mips = mips,
+                   .mip_count = mip_count,
+                   .channels = residual->channels,
+                   .residual = residual};
   size_t count = (size_t)level->box_w * (size_t)level->box_h, values = count * (size_t)c.channels;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW_ZERO(context, values, &c.value));

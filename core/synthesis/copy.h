@@ -78,7 +78,8 @@ static inline float rc_scale_step(float ratio) {
   return ratio > .957f && ratio < 1.045f ? 1.f : rc_exp2(roundf(8.f * rc_log2(ratio)) / 8.f);
 }
 
-/* The copy that takes target (x, y) from source (to_x, to_y), all relative to the chart's origin. */
+/* The copy that takes target (x, y) from source (to_x, to_y), all relative to the chart's origin.
+ */
 static inline rc_copy rc_copy_between(const rc_chart *chart, float x, float y, float to_x,
                                       float to_y) {
   float w = 1.f + chart->lx * x + chart->ly * y;

@@ -35,7 +35,8 @@ static void smooth_row(void *user, int y, int thread) {
       int sx = b->vertical ? x : x + i * b->spacing, sy = b->vertical ? y + i * b->spacing : y;
       sx = sx < 0 ? 0 : sx >= b->width ? b->width - 1 : sx;
       sy = sy < 0 ? 0 : sy >= b->height ? b->height - 1 : sy;
-      const float *pixel = b->in + ((size_t)sy * (size_t)b->width + (size_t)sx) * (size_t)b->channels;
+      const float *pixel =
+          b->in + ((size_t)sy * (size_t)b->width + (size_t)sx) * (size_t)b->channels;
       for (int k = 0; k < b->channels; k++) sum[k] += tap[i + 2] * pixel[k];
     }
     memcpy(b->out + ((size_t)y * (size_t)b->width + (size_t)x) * (size_t)b->channels, sum,
@@ -124,8 +125,8 @@ static void apply(const bands *b, const rc_level *level, const uint8_t *depth,
       int px = b->box.x0 + x, py = b->box.y0 + y;
       size_t i = ((size_t)y * (size_t)b->width + (size_t)x) * (size_t)b->channels;
       if (!rc_level_is_target(level, px, py) || class_at(level, px, py, &position) < 0) continue;
-      float ramp =
-          fminf((float)depth[(size_t)py * (size_t)level->width + (size_t)px] / (RAMP_PX + 1.f), 1.f);
+      float ramp = fminf(
+          (float)depth[(size_t)py * (size_t)level->width + (size_t)px] / (RAMP_PX + 1.f), 1.f);
       float *pixel = rc_pixel(residual, px, py);
       for (int n = 0; n < BANDS; n++) {
         float more = ramp * (gain_at(gains[n], level->ranges.count, position) - 1.f);

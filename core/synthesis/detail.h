@@ -1,5 +1,5 @@
-/* The paper's histogram matching, applied to detail: what a chain of resampled copies and joins loses
- * or gains in fine contrast is given back, measured on known pixels of the same scale. */
+/* The paper's histogram matching, applied to detail: what a chain of resampled copies and joins
+ * loses or gains in fine contrast is given back, measured on known pixels of the same scale. */
 #ifndef RECEDE_SYNTHESIS_DETAIL_H
 #define RECEDE_SYNTHESIS_DETAIL_H
 

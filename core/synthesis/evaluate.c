@@ -25,7 +25,8 @@ static int32_t unpack_at_border(const rc_level *level, int x, int y, rc_patch *p
   for (int i = 0; i < RC_PATCH_LANES; i++) {
     int px = x + rc_lane_x[i], py = y + rc_lane_y[i];
     patch->red[i] = patch->green[i] = patch->blue[i] = patch->weight[i] = 0;
-    if (i % RC_PATCH_CHUNK >= RC_PATCH_PIXELS / 3 || !rc_inside(level->width, level->height, px, py))
+    if (i % RC_PATCH_CHUNK >= RC_PATCH_PIXELS / 3 ||
+        !rc_inside(level->width, level->height, px, py))
       continue;
     size_t at = (size_t)py * (size_t)level->width + (size_t)px;
     uint32_t pixel = level->pixels[at];
@@ -69,9 +70,9 @@ float rc_place_price(float variance, const rc_place *place, float low, float hig
 
 static int32_t fixed(float value) { return (int32_t)floorf(value * 65536.f + .5f); }
 
-/* Whether all of a footprint lies in a square of room px around its centre's pixel. A pixel's index is
- * floor(fraction + .5 + offset), fraction < 1; .001 covers the fixed point's rounding. False for an
- * infinite or undefined Jacobian. */
+/* Whether all of a footprint lies in a square of room px around its centre's pixel. A pixel's index
+ * is floor(fraction + .5 + offset), fraction < 1; .001 covers the fixed point's rounding. False for
+ * an infinite or undefined Jacobian. */
 static bool fits(const float j[4], uint8_t room) {
   float x = fabsf(j[0]) + fabsf(j[1]), y = fabsf(j[2]) + fabsf(j[3]);
   return RC_PATCH_RADIUS * x + 1.501f < (float)room && RC_PATCH_RADIUS * y + 1.501f < (float)room;
@@ -110,7 +111,8 @@ float rc_query_cost(const rc_level *level, const rc_kernels *kernels, const rc_q
 
 bool rc_place_pixel(const rc_level *level, const rc_place *place, uint32_t *pixel) {
   float x = place->x + level->chart.x0 + .5f, y = place->y + level->chart.y0 + .5f;
-  if (place->beyond || !(x >= 0.f && y >= 0.f && x < (float)level->width && y < (float)level->height))
+  if (place->beyond ||
+      !(x >= 0.f && y >= 0.f && x < (float)level->width && y < (float)level->height))
     return false;
   size_t at = (size_t)(int)y * (size_t)level->width + (size_t)(int)x;
   *pixel = level->pixels[at];

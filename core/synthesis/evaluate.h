@@ -4,8 +4,8 @@
 
 #include "synthesis/level.h"
 
-/* Prices in units of the picture's variance, per log2(s)^2 with s = ratio^1.5: too coarse a source is
- * blurred, too fine a one costs little. */
+/* Prices in units of the picture's variance, per log2(s)^2 with s = ratio^1.5: too coarse a source
+ * is blurred, too fine a one costs little. */
 #define RC_PRICE_COARSE .3f
 #define RC_PRICE_FINE .02f
 /* And of a raised copy whose one scale does not fit its depth, per log2(mismatch)^2. */

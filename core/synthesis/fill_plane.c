@@ -1,5 +1,6 @@
 /* Method plane: the only file that knows the order of the stages.
- * tone -> pyramid -> start -> (search <-> vote) per level, coarse to fine -> composition -> detail. */
+ * tone -> pyramid -> start -> (search <-> vote) per level, coarse to fine -> composition -> detail.
+ */
 #include <math.h>
 
 #include "base/memory.h"
@@ -25,9 +26,9 @@
 #define PERIOD_TRIES 3
 /* The surface is judged on a picture of about this width. */
 #define SURFACE_LONGEST_PX 800
-/* Raised only when it is certain: flat textures measure .3 .. 1.2 (their contrast within a texel leans
- * less than they do), stones and bushes 0 .. .2. With nothing to lean both maps are the same, and the
- * raised one keeps to whole pixels. */
+/* Raised only when it is certain: flat textures measure .3 .. 1.2 (their contrast within a texel
+ * leans less than they do), stones and bushes 0 .. .2. With nothing to lean both maps are the same,
+ * and the raised one keeps to whole pixels. */
 #define LEAN_OF_RAISED .25
 #define TONE_SIGMA_OF_LONGEST (1.f / 14)
 /* Bytes span this many standard deviations to each side. */
@@ -112,8 +113,8 @@ static float byte_gain(const rc_image *residual, const rc_mask *flags) {
 
 /* Half as many with each finer level: the coarse ones decide and cost next to nothing. */
 static int iterations_at(const engine *e, int exponent) {
-  int most = e->params->engine_iterations ? e->params->engine_iterations
-                                          : e->effort.coarse_iterations;
+  int most =
+      e->params->engine_iterations ? e->params->engine_iterations : e->effort.coarse_iterations;
   int here = most >> (e->level_count - 1 - exponent);
   int least = e->effort.fine_iterations < most ? e->effort.fine_iterations : most;
   return here > least ? here : least;
@@ -131,17 +132,17 @@ static recede_status run_level(rc_context *context, const engine *e, int exponen
   for (int i = 0; i < iterations; i++) {
     if (i || !coarsest) RC_TRY(rc_vote(context, level, guide));
     for (int pass = 0; pass < e->effort.passes; pass++) {
-      rc_search search = {.kernels = e->kernels,
-                          .key = rc_key((uint64_t)e->params->seed, (uint32_t)exponent,
-                                        (uint32_t)(i * 16 + pass)),
-                          .pass = pass,
-                          .recost = pass == 0,
-                          .coherence = e->params->engine_coherence ? COHERENCE : 0.f,
-                          .local_radius = e->effort.local_radius,
-                          .anywhere = coarsest ? e->effort.anywhere : 0,
-                          .periods = e->periods,
-                          .period_count = coarsest ? e->period_count : 0,
-                          .period_tries = PERIOD_TRIES};
+      rc_search search = {
+          .kernels = e->kernels,
+          .key = rc_key((uint64_t)e->params->seed, (uint32_t)exponent, (uint32_t)(i * 16 + pass)),
+          .pass = pass,
+          .recost = pass == 0,
+          .coherence = e->params->engine_coherence ? COHERENCE : 0.f,
+          .local_radius = e->effort.local_radius,
+          .anywhere = coarsest ? e->effort.anywhere : 0,
+          .periods = e->periods,
+          .period_count = coarsest ? e->period_count : 0,
+          .period_tries = PERIOD_TRIES};
       RC_TRY(rc_search_pass(context, level, &search, old));
     }
     RC_TRY(rc_progress(context, (double)(i + 1) / iterations));
@@ -150,7 +151,8 @@ static recede_status run_level(rc_context *context, const engine *e, int exponen
     for (int pass = 0; pass < 2; pass++) {
       rc_search search = {.kernels = e->kernels,
                           .pass = pass,
-                          .coherence = e->params->engine_coherence ? COHERENCE_OF_COMPOSITION : 0.f};
+                          .coherence =
+                              e->params->engine_coherence ? COHERENCE_OF_COMPOSITION : 0.f};
       RC_TRY(rc_search_pass(context, level, &search, old));
     }
   rc_release(context, mark);
@@ -197,9 +199,10 @@ static recede_status choose_surface(rc_context *context, const rc_problem *probl
   double lean, error = 0;
   *raised = e->params->surface == RECEDE_SURFACE_RAISED;
   if (e->params->surface != RECEDE_SURFACE_AUTO) return RECEDE_OK;
-  while (exponent + 1 < e->level_count && e->images[exponent].width > SURFACE_LONGEST_PX) exponent++;
-  RC_TRY(rc_measure_lean(context, problem, &e->images[exponent], &e->flags[exponent], exponent, &lean,
-                         &error));
+  while (exponent + 1 < e->level_count && e->images[exponent].width > SURFACE_LONGEST_PX)
+    exponent++;
+  RC_TRY(rc_measure_lean(context, problem, &e->images[exponent], &e->flags[exponent], exponent,
+                         &lean, &error));
   *raised = isnan(lean) || lean + 2 * error < LEAN_OF_RAISED;
   return RECEDE_OK;
 }
@@ -222,7 +225,8 @@ static void count_magnified(rc_context *context, const rc_level *level) {
         report->largest_magnification = 1 / place.ratio;
     }
   if (report->magnified_pixels)
-    rc_warn(context, "%llu px had to be magnified (up to %.1f times): no source of their size exists.",
+    rc_warn(context,
+            "%llu px had to be magnified (up to %.1f times): no source of their size exists.",
             (unsigned long long)report->magnified_pixels, report->largest_magnification);
   if (missing > 0)
     rc_warn(context, "%.0f px found no source and got the smooth tone alone.", missing);
@@ -239,7 +243,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   rc_sampler *sampler;
   int longest = filled->width > filled->height ? filled->width : filled->height;
   if (!e.kernels)
-    return rc_fail(context, RECEDE_ARGUMENT, "This machine has no kernel %d.", context->host.kernel);
+    return rc_fail(context, RECEDE_ARGUMENT, "This machine has no kernel %d.",
+                   context->host.kernel);
   RC_TRY(rc_stage(context, "tone", .05, .07));
   RC_TRY(rc_tone_new(context, filled, &problem->flags, TONE_SIGMA_OF_LONGEST * (float)longest,
                      params->engine_tone, &tone));
@@ -254,7 +259,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(rc_stage(context, "composition", .8, .93));
   RC_TRY(RC_NEW(context, 1, &sampler));
   rc_sampler_init(sampler, !params->engine_spline);
-  RC_TRY(rc_compose(context, &finest, sampler, e.images, e.level_count, params->engine_join, filled));
+  RC_TRY(
+      rc_compose(context, &finest, sampler, e.images, e.level_count, params->engine_join, filled));
   RC_TRY(rc_stage(context, "detail", .93, .97));
   if (params->engine_detail) RC_TRY(rc_match_detail(context, &finest, filled));
   count_magnified(context, &finest);

@@ -30,9 +30,9 @@ typedef struct rc_level {
   rc_chart chart;
   rc_box box; /* of the target */
   int box_w, box_h;
-  rc_copy *field;   /* box_w * box_h, row by row; NAN a = none yet */
-  float *cost;      /* of the field's copies without the price of incoherence */
-  uint8_t *classes; /* class of each box pixel */
+  rc_copy *field;                      /* box_w * box_h, row by row; NAN a = none yet */
+  float *cost;                         /* of the field's copies without the price of incoherence */
+  uint8_t *classes;                    /* class of each box pixel */
   int32_t lane_offset[RC_PATCH_LANES]; /* of each lane of a patch, in pixels */
   rc_ranges ranges;
   float variance; /* of known pixels, byte^2, mean over channels */
@@ -60,8 +60,8 @@ static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
 recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_mask *flags,
                            const rc_chart *chart, float gamma, float gain, const rc_ranges *ranges,
                            rc_level *level);
-/* A random source pixel of the right scale for a target pixel of relative position (x, y) and class;
- * false when there is none. */
+/* A random source pixel of the right scale for a target pixel of relative position (x, y) and
+ * class; false when there is none. */
 bool rc_level_random_source(const rc_level *level, float x, float y, int class_index, uint64_t bits,
                             int *source_x, int *source_y);
 

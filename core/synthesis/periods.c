@@ -21,7 +21,7 @@ typedef struct correlation {
   rc_chart flat;
   const float *brightness;
   const int32_t *points;
-  int lag; /* largest */
+  int lag;      /* largest */
   float *value; /* (lag + 1) rows of 2 lag + 1 */
 } correlation;
 
@@ -38,7 +38,8 @@ static void correlate_lag(const correlation *c, int dx, int dy, float *value) {
     rc_place place = rc_copy_place(&c->flat, copy, rc_level_x(level, x), rc_level_y(level, y));
     float sx = place.x + c->flat.x0 + .5f, sy = place.y + c->flat.y0 + .5f;
     if (place.beyond || !(place.ratio > .5f && place.ratio < 2.f)) continue;
-    if (!(sx >= 0.f && sy >= 0.f && sx < (float)level->width && sy < (float)level->height)) continue;
+    if (!(sx >= 0.f && sy >= 0.f && sx < (float)level->width && sy < (float)level->height))
+      continue;
     size_t at = (size_t)(int)sy * (size_t)level->width + (size_t)(int)sx;
     if (!level->room[at]) continue;
     double p = c->brightness[c->points[i]], q = c->brightness[at];
@@ -93,9 +94,9 @@ static recede_status collect(rc_context *context, const correlation *c,
     for (int dx = -c->lag; dx <= c->lag; dx++) {
       if (!is_peak(c, dx, dy)) continue;
       float own = value_at(c, dx, dy);
-      peaks[found++] = (peak){
-          own, (float)dx + vertex(value_at(c, dx - 1, dy), own, value_at(c, dx + 1, dy)),
-          (float)dy + vertex(value_at(c, dx, dy - 1), own, value_at(c, dx, dy + 1))};
+      peaks[found++] =
+          (peak){own, (float)dx + vertex(value_at(c, dx - 1, dy), own, value_at(c, dx + 1, dy)),
+                 (float)dy + vertex(value_at(c, dx, dy - 1), own, value_at(c, dx, dy + 1))};
     }
   qsort(peaks, (size_t)found, sizeof *peaks, stronger_first);
   for (int i = 0; i < found && *count + 1 < RC_MOST_PERIODS; i++) {
@@ -126,7 +127,8 @@ recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64
                     .59f * (float)(level->pixels[i] >> 8 & 255) +
                     .11f * (float)(level->pixels[i] >> 16 & 255);
   for (int i = 0; i < POINTS; i++)
-    points[i] = level->order[rc_below((uint32_t)rc_random(key, (uint32_t)i, 0, 0), (uint32_t)sources)];
+    points[i] =
+        level->order[rc_below((uint32_t)rc_random(key, (uint32_t)i, 0, 0), (uint32_t)sources)];
   c.brightness = brightness, c.points = points;
   RC_TRY(rc_parallel(context, c.lag + 1, correlate_row, &c));
   RC_TRY(collect(context, &c, periods, count));

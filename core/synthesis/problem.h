@@ -4,8 +4,8 @@
 
 #include "image/image.h"
 
-/* w(x, y) = a x + b y + c in the problem's own coordinates: 1 at the target's centroid, proportional
- * to 1 / depth, 0 on the horizon. All that matters for copying within the plane. */
+/* w(x, y) = a x + b y + c in the problem's own coordinates: 1 at the target's centroid,
+ * proportional to 1 / depth, 0 on the horizon. All that matters for copying within the plane. */
 typedef struct rc_line {
   double a, b, c;
 } rc_line;
@@ -18,7 +18,7 @@ typedef struct rc_problem {
   rc_mask flags;  /* RC_TARGET, RC_KNOWN, RC_SOURCE */
   rc_box target;  /* bounding box of the TARGET pixels */
   rc_line line;
-  recede_plane plane; /* of the whole picture */
+  recede_plane plane;     /* of the whole picture */
   int origin_x, origin_y; /* of image in the whole picture */
 } rc_problem;
 
@@ -35,7 +35,8 @@ recede_status rc_synthesize_paper(rc_context *context, const rc_image *exemplar,
                                   const rc_mask *flags, const recede_plane *plane,
                                   const recede_params *params, rc_image *result);
 
-/* Upper bounds of memory beyond the problem itself, bytes, for pixels of which target are filled. */
+/* Upper bounds of memory beyond the problem itself, bytes, for pixels of which target are filled.
+ */
 uint64_t rc_plane_bytes(uint64_t pixels, uint64_t target, int channels,
                         const recede_params *params);
 uint64_t rc_paper_bytes(uint64_t exemplar_pixels, uint64_t target, int channels,

@@ -6,8 +6,8 @@
 #include "base/memory.h"
 #include "image/view.h"
 
-/* The margin around a hole: small ones need several texels, whatever their size; large ones hold many
- * themselves. */
+/* The margin around a hole: small ones need several texels, whatever their size; large ones hold
+ * many themselves. */
 #define LEAST_MARGIN_PX 300
 #define MARGIN_OF_HOLE .5
 /* Target pixels with less than this part of the nearest target pixel's w are not on the plane: a
@@ -68,7 +68,8 @@ static rc_line line_of(const recede_plane *plane, int origin_x, int origin_y, do
 }
 
 static recede_status read_pixels(rc_context *context, const rc_views *views, rc_problem *problem) {
-  int width = problem->image.width, channels = views->image->channels, colours = channels < 3 ? 1 : 3;
+  int width = problem->image.width, channels = views->image->channels,
+      colours = channels < 3 ? 1 : 3;
   float *values, *scratch;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, width * channels, &values));
@@ -140,9 +141,10 @@ static recede_status check_source(rc_context *context, const rc_problem *problem
   size_t pixels = (size_t)problem->flags.width * (size_t)problem->flags.height, sources = 0;
   for (size_t i = 0; i < pixels; i++) sources += problem->flags.data[i] & RC_SOURCE ? 1 : 0;
   if (sources) return RECEDE_OK;
-  return rc_fail(context, RECEDE_EMPTY_SOURCE,
-                 "Nothing is left to copy from: no pixel outside the mask is opaque, finite, on the "
-                 "plane and inside the source region. Mask less or widen the source region.");
+  return rc_fail(
+      context, RECEDE_EMPTY_SOURCE,
+      "Nothing is left to copy from: no pixel outside the mask is opaque, finite, on the "
+      "plane and inside the source region. Mask less or widen the source region.");
 }
 
 recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
@@ -157,17 +159,18 @@ recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
   RC_TRY(read_pixels(context, views, problem));
   double nearest = nearest_w(problem, &x, &y);
   if (!(nearest > 0))
-    return rc_fail(context, RECEDE_EMPTY_TARGET,
-                   "All %llu px of the mask lie beyond the horizon: there is no plane to fill. Move "
-                   "the horizon or fill with the frontal orientation.",
-                   (unsigned long long)summary->pixels);
+    return rc_fail(
+        context, RECEDE_EMPTY_TARGET,
+        "All %llu px of the mask lie beyond the horizon: there is no plane to fill. Move "
+        "the horizon or fill with the frontal orientation.",
+        (unsigned long long)summary->pixels);
   problem->line = line_of(plane, box.x0, box.y0, x, y);
   apply_horizon(context, problem, LEAST_W_OF_TARGET * nearest / recede_plane_w(plane, x, y));
   distrust_ring(&problem->flags);
   if (context->report.refused_pixels)
-    rc_warn(context, "%llu of %llu px of the mask lie beyond the horizon and were left as they were.",
-            (unsigned long long)context->report.refused_pixels,
-            (unsigned long long)summary->pixels);
+    rc_warn(
+        context, "%llu of %llu px of the mask lie beyond the horizon and were left as they were.",
+        (unsigned long long)context->report.refused_pixels, (unsigned long long)summary->pixels);
   return check_source(context, problem);
 }
 

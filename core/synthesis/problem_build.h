@@ -6,7 +6,7 @@
 #include "synthesis/problem.h"
 
 typedef struct rc_target_summary {
-  rc_box box;      /* of the mask's pixels above 0 */
+  rc_box box; /* of the mask's pixels above 0 */
   uint64_t pixels;
   double x, y; /* centroid */
 } rc_target_summary;

@@ -1,6 +1,6 @@
 /* Tiles are scanned in parallel. Inside its tile a scan sees what it has just written, so that good
- * copies run far; outside it sees the field as it was before the pass, so that the order of the tiles
- * cannot matter. */
+ * copies run far; outside it sees the field as it was before the pass, so that the order of the
+ * tiles cannot matter. */
 #include "synthesis/search.h"
 
 #include <string.h>
@@ -68,11 +68,9 @@ static void try_nearby(const scan *s, pixel_state *state) {
   const rc_level *level = s->level;
   int n = 0;
   for (int radius = s->search->local_radius; radius >= 2; radius /= 2, n++) {
-    rc_place place =
-        rc_copy_place(&level->chart, state->best, state->query.x, state->query.y);
+    rc_place place = rc_copy_place(&level->chart, state->best, state->query.x, state->query.y);
     if (place.beyond) return;
-    uint64_t bits =
-        rc_random(s->search->key, (uint32_t)state->x, (uint32_t)state->y, (uint32_t)n);
+    uint64_t bits = rc_random(s->search->key, (uint32_t)state->x, (uint32_t)state->y, (uint32_t)n);
     int dx = (int)rc_below((uint32_t)bits, 2u * (uint32_t)radius + 1) - radius;
     int dy = (int)rc_below((uint32_t)(bits >> 32), 2u * (uint32_t)radius + 1) - radius;
     float x = place.x + (float)dx, y = place.y + (float)dy;
@@ -109,8 +107,7 @@ static void try_periods(const scan *s, pixel_state *state) {
   for (int n = 0; n < search->period_tries && search->period_count; n++) {
     uint64_t bits =
         rc_random(search->key, (uint32_t)state->x, (uint32_t)state->y, 200u + (uint32_t)n);
-    rc_copy period =
-        search->periods[rc_below((uint32_t)bits, (uint32_t)search->period_count)];
+    rc_copy period = search->periods[rc_below((uint32_t)bits, (uint32_t)search->period_count)];
     rc_copy from = bits >> 63 ? state->best : still;
     try_copy(s, state, shifted_by_period(s->level, state, from, period), CHANCE_MUST_BEAT);
   }
@@ -128,8 +125,7 @@ static void improve_pixel(const scan *s, rc_box tile, pixel_state *state) {
                                        : rc_query_cost(level, s->search->kernels, &state->query,
                                                        state->best, RC_NO_COST);
   state->total = state->base + state->price * (float)differing(state, state->best);
-  for (int i = 0; i < state->neighbour_count; i++)
-    try_copy(s, state, state->neighbours[i], 1.f);
+  for (int i = 0; i < state->neighbour_count; i++) try_copy(s, state, state->neighbours[i], 1.f);
   try_anywhere(s, state);
   try_periods(s, state);
   try_nearby(s, state);

@@ -6,12 +6,12 @@
 
 typedef struct rc_search {
   const rc_kernels *kernels;
-  uint64_t key;      /* of the random numbers: seed, level, iteration, pass */
-  int pass;          /* even: forward, odd: backward and the tiles shifted by half */
-  bool recost;       /* the guide has changed since the costs were taken */
-  float coherence;   /* price for each 4-neighbour with another copy, in variances */
-  int local_radius;  /* largest radius of the local random candidates, px; 0 = none */
-  int anywhere;      /* random candidates from all sources of the right scale */
+  uint64_t key;           /* of the random numbers: seed, level, iteration, pass */
+  int pass;               /* even: forward, odd: backward and the tiles shifted by half */
+  bool recost;            /* the guide has changed since the costs were taken */
+  float coherence;        /* price for each 4-neighbour with another copy, in variances */
+  int local_radius;       /* largest radius of the local random candidates, px; 0 = none */
+  int anywhere;           /* random candidates from all sources of the right scale */
   const rc_copy *periods; /* candidates to add to the pixel's copy (flat) */
   int period_count, period_tries;
 } rc_search;

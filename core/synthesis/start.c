@@ -145,7 +145,8 @@ recede_status rc_start(rc_context *context, rc_level *level, const rc_search *se
   for (int n = 1; n < 256; n++) {
     ring r = {level, search, pixels + first[n], first[n + 1] - first[n], depth, n};
     if (!r.count) continue;
-    RC_TRY(rc_parallel(context, (r.count + PIXELS_PER_ITEM - 1) / PIXELS_PER_ITEM, choose_some, &r));
+    RC_TRY(
+        rc_parallel(context, (r.count + PIXELS_PER_ITEM - 1) / PIXELS_PER_ITEM, choose_some, &r));
     show(&r, final_weight);
   }
   memcpy(level->weight, final_weight, count);

@@ -1,5 +1,5 @@
-/* The start at the coarsest level: the hole is peeled from its border inwards, each pixel taking the
- * copy that continues best what is already there. */
+/* The start at the coarsest level: the hole is peeled from its border inwards, each pixel taking
+ * the copy that continues best what is already there. */
 #ifndef RECEDE_SYNTHESIS_START_H
 #define RECEDE_SYNTHESIS_START_H
 

@@ -94,8 +94,7 @@ static double regress(const cell *cells, int count, double cap, double *error) {
 }
 
 recede_status rc_measure_lean(rc_context *context, const rc_problem *problem, const rc_image *image,
-                              const rc_mask *flags, int exponent, double *lean,
-                              double *error) {
+                              const rc_mask *flags, int exponent, double *lean, double *error) {
   frame f = frame_of(&problem->plane);
   int columns = image->width / CELL_PX + 1, rows = image->height / CELL_PX + 1, count = 0;
   cell *cells;

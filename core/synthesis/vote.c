@@ -97,7 +97,8 @@ recede_status rc_vote(rc_context *context, rc_level *level, uint32_t *guide) {
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++)
       if (rc_level_is_target(level, x, y))
-        level->pixels[(size_t)y * (size_t)level->width + (size_t)x] = guide[rc_level_at(level, x, y)];
+        level->pixels[(size_t)y * (size_t)level->width + (size_t)x] =
+            guide[rc_level_at(level, x, y)];
   rc_release(context, mark);
   return RECEDE_OK;
 }

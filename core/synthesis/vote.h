@@ -1,5 +1,5 @@
-/* The vote: the guide that the next search compares with, an average of what the patches that cover a
- * pixel would put there. It only guides; the picture itself is composed of whole copies. */
+/* The vote: the guide that the next search compares with, an average of what the patches that cover
+ * a pixel would put there. It only guides; the picture itself is composed of whole copies. */
 #ifndef RECEDE_SYNTHESIS_VOTE_H
 #define RECEDE_SYNTHESIS_VOTE_H
 

@@ -1,5 +1,5 @@
-/* The plane: conversions, exact scale maps against finite differences of a homography that this test
- * builds on its own, and the paper's eqs 1-3. */
+/* The plane: conversions, exact scale maps against finite differences of a homography that this
+ * test builds on its own, and the paper's eqs 1-3. */
 #include <glib.h>
 #include <math.h>
 #include <string.h>
@@ -52,7 +52,8 @@ static void check_scales(double slant, double tilt, double fov) {
   camera c = camera_of(width, height, slant, tilt, fov, slant < 90 ? 1 : -1);
   recede_plane plane;
   g_assert_cmpint(recede_plane_from_angles(width, height, slant, tilt, fov, &plane), ==, RECEDE_OK);
-  /* Where a texel is 1 px across: the centre, or for slants from 90 on a point before the horizon. */
+  /* Where a texel is 1 px across: the centre, or for slants from 90 on a point before the horizon.
+   */
   double ref_q = slant < 75 ? 0 : c.f * c.cosine / c.sine - 60;
   double ref_x = c.cx + ref_q * c.d[0], ref_y = c.cy + ref_q * c.d[1];
   double unit = texels_per_px(&c, ref_x, ref_y, c.e);
@@ -60,7 +61,8 @@ static void check_scales(double slant, double tilt, double fov) {
     double q = ref_q - 4 * i + (slant < 75 ? 80 : 0);
     double x = c.cx + q * c.d[0], y = c.cy + q * c.d[1];
     if (recede_plane_w(&plane, x, y) < .02) continue;
-    double across = unit / texels_per_px(&c, x, y, c.e), along = unit / texels_per_px(&c, x, y, c.d);
+    double across = unit / texels_per_px(&c, x, y, c.e),
+           along = unit / texels_per_px(&c, x, y, c.d);
     double off_x = x + 37 * c.e[0], off_y = y + 37 * c.e[1];
     double area = unit * unit / texel_area_per_px(&c, off_x, off_y);
     g_assert_cmpfloat_with_epsilon(
@@ -113,7 +115,8 @@ static void every_form_converts(void) {
       double qx = ends[0] + ends[2], qy = ends[1] + ends[3];
       double on_x = qx / 2 - 90 * sin(tilt * RADIAN), on_y = qy / 2 + 90 * cos(tilt * RADIAN);
       g_assert_cmpint(recede_plane_from_horizon(640, 480, 50, ends[0], ends[1], ends[2], ends[3],
-                                                on_x, on_y, &again), ==, RECEDE_OK);
+                                                on_x, on_y, &again),
+                      ==, RECEDE_OK);
       g_assert_cmpfloat(angle_between(&plane, &again), <, 1e-7);
       g_assert_true(recede_plane_quad(&plane, on_x, on_y, 20, quad));
       g_assert_cmpint(recede_plane_from_quad(640, 480, 50, quad, 0, &again), ==, RECEDE_OK);
