@@ -224,7 +224,8 @@ static void every_allocation_fails(void) {
     for (int size = 0; size <= 60; size += 60)
       for (guint64 n = 1;; n++) {
         task t = task_new(64, 64, size, methods[m]);
-        t.params.paper_iterations = 1; /* a second one allocates the same again */
+        t.params.paper_iterations = 1; /* more of either allocate the same again */
+        t.params.paper_levels = 2;
         t.host.fail_allocation = n;
         task_run(&t);
         bool done = t.status == RECEDE_OK;
