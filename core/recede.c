@@ -235,12 +235,14 @@ static uint64_t pixels_in(rc_box box) {
   return (uint64_t)(box.x1 - box.x0) * (uint64_t)(box.y1 - box.y0);
 }
 
-static uint64_t bytes_of_fill(const recede_job *job, uint64_t pixels, uint64_t target) {
+/* pixels: looked at; box: those of the target's bounding box. */
+static uint64_t bytes_of_fill(const recede_job *job, uint64_t pixels, uint64_t box) {
   int colours = job->image.channels < 3 ? 1 : 3;
-  uint64_t problem = pixels * (uint64_t)(2 * colours * 4 + 1) + ((uint64_t)4 << 20);
+  uint64_t problem = pixels * (uint64_t)(colours * 4 + 1) + ((uint64_t)4 << 20);
   return problem + (job->params.method == RECEDE_METHOD_PLANE
-                        ? rc_plane_bytes(pixels, target, colours, &job->params)
-                        : rc_paper_bytes(pixels, target, colours, &job->params));
+                        ? rc_plane_bytes(pixels, box, colours, &job->params)
+                        : pixels * (uint64_t)(colours * 4) +
+                              rc_paper_bytes(pixels, box, colours, &job->params));
 }
 
 static recede_status refuse_too_large(rc_context *context, uint64_t bytes) {
@@ -260,7 +262,8 @@ static recede_status plan_fill(recede_job *job, rc_target_summary *summary) {
   RC_TRY(check_same_size(job, &job->source, "source mask"));
   RC_TRY(rc_summarize_target(&job->context, &job->mask, summary));
   rc_box box = rc_problem_box(summary, job->image.width, job->image.height);
-  return refuse_too_large(&job->context, bytes_of_fill(job, pixels_in(box), summary->pixels));
+  return refuse_too_large(&job->context,
+                          bytes_of_fill(job, pixels_in(box), pixels_in(summary->box)));
 }
 
 recede_status recede_job_estimate_fill(recede_job *job, uint64_t *bytes, double *seconds) {
@@ -385,6 +388,7 @@ recede_status recede_job_estimate_synthesize(recede_job *job, int width, int hei
   return end(job, status);
 }
 
+/* Pixels with no flag are beyond the horizon: transparent or black. */
 static void write_synthesis(const rc_image *made, const rc_mask *flags, const recede_view *result) {
   for (int y = 0; y < result->height; y++)
     for (int x = 0; x < result->width; x++) {
@@ -397,6 +401,17 @@ static void write_synthesis(const rc_image *made, const rc_mask *flags, const re
     }
 }
 
+/* The exemplar's own pixels, bit for bit. */
+static void write_exemplar(const recede_view *exemplar, const rc_problem *problem,
+                           const recede_view *result) {
+  size_t bytes = (size_t)result->channels * rc_type_bytes(result->type);
+  for (int y = 0; y < result->height; y++)
+    for (int x = 0; x < result->width; x++)
+      if (*rc_flag(&problem->flags, x, y) & RC_KNOWN)
+        memcpy(rc_view_pixel(result, x, y),
+               rc_view_pixel(exemplar, x + problem->exemplar_x, y + problem->exemplar_y), bytes);
+}
+
 static recede_status synthesize_in_plane(recede_job *job, const recede_plane *plane,
                                          const recede_view *result) {
   rc_views views = {&job->image, NULL, job->source.data ? &job->source : NULL};
@@ -406,6 +421,7 @@ static recede_status synthesize_in_plane(recede_job *job, const recede_plane *pl
   RC_TRY(run_method(job, &problem, &filled));
   RC_TRY(rc_stage(&job->context, "write", .97, 1));
   write_synthesis(&filled, &problem.flags, result);
+  write_exemplar(&job->image, &problem, result);
   return RECEDE_OK;
 }
 

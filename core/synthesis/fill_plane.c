@@ -34,15 +34,22 @@
 /* Bytes span this many standard deviations to each side. */
 #define DEVIATIONS 4.f
 
+/* What the quality levels change. */
 typedef struct effort {
-  int start_tries, coarse_iterations, fine_iterations, passes, anywhere, local_radius;
+  int start_tries;       /* random candidates per pixel of the start */
+  int coarse_iterations; /* at the coarsest level; half as many with each finer one */
+  int fine_iterations;   /* but at least these */
+  int finest_iterations; /* and these at the finest; 0: only takes the coarser copies over */
+  int anywhere;          /* random candidates per pixel from all sources, coarsest level */
+  int local_radius;      /* largest radius of the random candidates nearby, px */
 } effort;
 
 static const effort efforts[] = {
-    [RECEDE_QUALITY_DRAFT] = {30, 6, 1, 2, 2, 8},
+    [RECEDE_QUALITY_DRAFT] = {30, 6, 2, 0, 2, 8},
     [RECEDE_QUALITY_NORMAL] = {60, 12, 2, 2, 4, 16},
-    [RECEDE_QUALITY_BEST] = {100, 24, 4, 2, 6, 16},
+    [RECEDE_QUALITY_BEST] = {100, 24, 4, 4, 6, 16},
 };
+#define PASSES 2
 
 typedef struct engine {
   const recede_params *params;
@@ -111,18 +118,49 @@ static float byte_gain(const rc_image *residual, const rc_mask *flags) {
   return deviation > 1e-9 ? (float)(127 / (DEVIATIONS * deviation)) : 1.f;
 }
 
-/* Half as many with each finer level: the coarse ones decide and cost next to nothing. */
+/* The coarse levels decide and cost next to nothing. */
 static int iterations_at(const engine *e, int exponent) {
-  int most =
-      e->params->engine_iterations ? e->params->engine_iterations : e->effort.coarse_iterations;
+  const effort *by = &e->effort;
+  int most = e->params->engine_iterations ? e->params->engine_iterations : by->coarse_iterations;
   int here = most >> (e->level_count - 1 - exponent);
-  int least = e->effort.fine_iterations < most ? e->effort.fine_iterations : most;
+  int least = exponent || e->level_count == 1 ? by->fine_iterations : by->finest_iterations;
+  if (!exponent && e->level_count > 1) return least < most ? least : most;
+  least = least < most ? least : most;
   return here > least ? here : least;
 }
 
-static recede_status run_level(rc_context *context, const engine *e, int exponent, rc_level *level,
-                               bool coarsest) {
+static rc_search search_of(const engine *e, int exponent, int iteration, int pass) {
+  bool coarsest = exponent == e->level_count - 1;
+  return (rc_search){.kernels = e->kernels,
+                     .key = rc_key((uint64_t)e->params->seed, (uint32_t)exponent,
+                                   (uint32_t)(iteration * PASSES + pass)),
+                     .pass = pass,
+                     .recost = pass == 0,
+                     .coherence = e->params->engine_coherence ? COHERENCE : 0.f,
+                     .local_radius = e->effort.local_radius,
+                     .anywhere = coarsest ? e->effort.anywhere : 0,
+                     .periods = e->periods,
+                     .period_count = coarsest ? e->period_count : 0,
+                     .period_tries = PERIOD_TRIES};
+}
+
+/* Propagation alone, with a higher price on incoherence: whole copies for the composition. */
+static recede_status settle(rc_context *context, const engine *e, rc_level *level, rc_copy *old,
+                            bool recost) {
+  for (int pass = 0; pass < PASSES; pass++) {
+    rc_search search = {.kernels = e->kernels,
+                        .pass = pass,
+                        .recost = recost && pass == 0,
+                        .coherence = e->params->engine_coherence ? COHERENCE_OF_COMPOSITION : 0.f};
+    RC_TRY(rc_search_pass(context, level, &search, old));
+  }
+  return RECEDE_OK;
+}
+
+static recede_status run_level(rc_context *context, const engine *e, int exponent,
+                               rc_level *level) {
   int iterations = iterations_at(e, exponent);
+  bool coarsest = exponent == e->level_count - 1;
   size_t box = (size_t)level->box_w * (size_t)level->box_h;
   rc_copy *old;
   uint32_t *guide;
@@ -131,30 +169,14 @@ static recede_status run_level(rc_context *context, const engine *e, int exponen
   RC_TRY(RC_NEW(context, box, &guide));
   for (int i = 0; i < iterations; i++) {
     if (i || !coarsest) RC_TRY(rc_vote(context, level, guide));
-    for (int pass = 0; pass < e->effort.passes; pass++) {
-      rc_search search = {
-          .kernels = e->kernels,
-          .key = rc_key((uint64_t)e->params->seed, (uint32_t)exponent, (uint32_t)(i * 16 + pass)),
-          .pass = pass,
-          .recost = pass == 0,
-          .coherence = e->params->engine_coherence ? COHERENCE : 0.f,
-          .local_radius = e->effort.local_radius,
-          .anywhere = coarsest ? e->effort.anywhere : 0,
-          .periods = e->periods,
-          .period_count = coarsest ? e->period_count : 0,
-          .period_tries = PERIOD_TRIES};
+    for (int pass = 0; pass < PASSES; pass++) {
+      rc_search search = search_of(e, exponent, i, pass);
       RC_TRY(rc_search_pass(context, level, &search, old));
     }
     RC_TRY(rc_progress(context, (double)(i + 1) / iterations));
   }
-  if (exponent == 0)
-    for (int pass = 0; pass < 2; pass++) {
-      rc_search search = {.kernels = e->kernels,
-                          .pass = pass,
-                          .coherence =
-                              e->params->engine_coherence ? COHERENCE_OF_COMPOSITION : 0.f};
-      RC_TRY(rc_search_pass(context, level, &search, old));
-    }
+  if (!iterations) RC_TRY(rc_vote(context, level, guide));
+  if (exponent == 0) RC_TRY(settle(context, e, level, old, !iterations));
   rc_release(context, mark);
   return RECEDE_OK;
 }
@@ -186,7 +208,7 @@ static recede_status search_levels(rc_context *context, engine *e, rc_level *fin
     else
       rc_field_from_coarser(&level, &coarser);
     RC_TRY(rc_stage(context, "search", from, exponent ? to : .8));
-    RC_TRY(run_level(context, e, exponent, &level, coarsest));
+    RC_TRY(run_level(context, e, exponent, &level));
     coarser = level;
   }
   *finest = level;
@@ -267,8 +289,14 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   return rc_tone_apply(context, &tone, &problem->flags, RC_TARGET, 1, filled);
 }
 
-uint64_t rc_plane_bytes(uint64_t pixels, uint64_t target, int channels,
-                        const recede_params *params) {
+uint64_t rc_plane_bytes(uint64_t pixels, uint64_t box, int channels, const recede_params *params) {
+  uint64_t c = (uint64_t)channels, thirds = 4; /* a pyramid is 4/3 of its finest level */
+  uint64_t grown = 4 * box + (256 << 10);      /* the box that detail is measured in */
+  uint64_t pyramid = pixels * (4 * c + 1) / 3;
+  uint64_t levels = (pixels * (4 + 1 + 1 + 4) + box * (12 + 4 + 1)) * thirds / 3;
+  uint64_t search = box * (12 + 4 + 4), composition = box * (12 * c + 1);
+  uint64_t detail = (grown < pixels ? grown : pixels) * 16 * c + pixels;
+  uint64_t last = search > composition ? search : composition;
   (void)params;
-  return pixels * (uint64_t)channels * 8 + target * 64;
+  return pyramid + levels + (last > detail ? last : detail) + ((uint64_t)2 << 20);
 }

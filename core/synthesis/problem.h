@@ -18,8 +18,9 @@ typedef struct rc_problem {
   rc_mask flags;  /* RC_TARGET, RC_KNOWN, RC_SOURCE */
   rc_box target;  /* bounding box of the TARGET pixels */
   rc_line line;
-  recede_plane plane;     /* of the whole picture */
-  int origin_x, origin_y; /* of image in the whole picture */
+  recede_plane plane;         /* of the whole picture */
+  int origin_x, origin_y;     /* of image in the whole picture */
+  int exemplar_x, exemplar_y; /* synthesis: exemplar's pixel at image's (0, 0) */
 } rc_problem;
 
 /* Each fills the TARGET pixels of *filled, which starts as problem->image (for method plane it IS
@@ -35,10 +36,9 @@ recede_status rc_synthesize_paper(rc_context *context, const rc_image *exemplar,
                                   const rc_mask *flags, const recede_plane *plane,
                                   const recede_params *params, rc_image *result);
 
-/* Upper bounds of memory beyond the problem itself, bytes, for pixels of which target are filled.
- */
-uint64_t rc_plane_bytes(uint64_t pixels, uint64_t target, int channels,
-                        const recede_params *params);
+/* Upper bounds of memory beyond the problem itself (and the result), bytes: for so many pixels
+ * looked at, and in the target's bounding box. */
+uint64_t rc_plane_bytes(uint64_t pixels, uint64_t box, int channels, const recede_params *params);
 uint64_t rc_paper_bytes(uint64_t exemplar_pixels, uint64_t target, int channels,
                         const recede_params *params);
 
