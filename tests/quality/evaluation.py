@@ -1,8 +1,9 @@
 """The evaluation data: where it is, its cases, and scores by its metrics.py.
 
 The data lies beside the checkout in ../shared/evaluate, or where RECEDE_EVALUATE says. When its
-cases are not made there yet, it is copied into the cache and they are made in the copy. Truths'
-raw numbers and scores are cached by the bytes they depend on, so no result is ever measured twice.
+cases are not made there yet, it is copied into the cache and those that are asked for are made.
+Truths' raw numbers and scores are cached by the bytes they depend on, so no result is ever measured
+twice.
 """
 import hashlib
 import importlib.util
@@ -21,6 +22,12 @@ import numpy as np
 
 PROJECT = Path(__file__).resolve().parents[2]
 CACHE = Path(os.environ.get('XDG_CACHE_HOME') or Path.home() / '.cache') / 'recede' / 'evaluate'
+CASES = 30  # of make_cases.py
+MAKE_ONE = f'''
+import sys, types, make_cases
+case = list(make_cases.cases({CASES}))[int(sys.argv[1])]
+make_cases.one(types.SimpleNamespace(size=512, out=sys.argv[2]), case)
+'''
 
 
 @dataclass
@@ -85,34 +92,54 @@ def data_folder():
     return None
 
 
-def prepared_folder(count=30):
-    """The data with its cases made: in place where they are, else in a copy in the cache."""
+def working_folder():
+    """The data's folder if its cases are made there; else a copy in the cache, where they can be.
+    """
     folder = data_folder()
     if folder is None:
-        return None
+        raise SystemExit('the evaluation data is not there: put it into ../shared/evaluate, or '
+                         'name its folder in RECEDE_EVALUATE')
     if (folder / 'cases').is_dir() and (folder / 'photo_cases').is_dir():
         return folder
-    ready = CACHE / 'data' / digest(count, *sorted(folder.glob('*.py')))
-    if not ready.exists():
-        print(f'making {count} cases in {ready}', file=sys.stderr)
-        make_cases(folder, ready, count)
-    return ready
+    copy = CACHE / 'data' / digest(*sorted(folder.glob('*.py')))
+    if not copy.exists():
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=copy.parent) as temporary:
+            copy_data(folder, Path(temporary) / 'evaluate')
+            (Path(temporary) / 'evaluate').rename(copy)
+    return copy
 
 
-def make_cases(folder, ready, count):
-    """Copies the data and makes its cases there; the name `ready` appears when all is done."""
-    ready.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=ready.parent) as temporary:
-        copy = Path(temporary) / 'evaluate'
-        # copyfile: the original may be read-only, its modes must not come along.
-        shutil.copytree(folder, copy, copy_function=shutil.copyfile)
-        for path in [copy, *copy.rglob('*')]:
-            path.chmod(0o755)
-        for command in (['make_cases.py', '-n', str(count)], ['make_photo_cases.py']):
-            subprocess.run([sys.executable, *command], cwd=copy, check=True,
-                           stdout=subprocess.DEVNULL)
-        if not ready.exists():  # somebody else may have been faster
-            copy.rename(ready)
+def copy_data(folder, copy):
+    # copyfile: the original may be read-only, its modes must not come along.
+    shutil.copytree(folder, copy, copy_function=shutil.copyfile)
+    for path in [copy, *copy.rglob('*')]:
+        path.chmod(0o755)
+    (copy / 'cases').mkdir(exist_ok=True)
+    subprocess.run([sys.executable, 'make_photo_cases.py'], cwd=copy, check=True,
+                   stdout=subprocess.DEVNULL)
+
+
+def rendered_folders(root, wanted):
+    """Folders of the rendered cases, those that are wanted; made where they are not there yet."""
+    if root == data_folder():
+        return [path for path in sorted((root / 'cases').iterdir())
+                if path.name.startswith(wanted)]
+    sys.path.insert(0, str(root))
+    import make_cases
+    folders = []
+    for case in make_cases.cases(CASES):
+        index, texture, slant, tilt, kind = case
+        path = root / 'cases' / f'{index:03d}_{texture}_s{slant}_t{tilt}_{kind}'
+        if not path.name.startswith(wanted):
+            continue
+        if not path.exists():
+            with tempfile.TemporaryDirectory(dir=root) as temporary:
+                subprocess.run([sys.executable, '-c', MAKE_ONE, str(index), temporary], cwd=root,
+                               check=True, stdout=subprocess.DEVNULL)
+                (Path(temporary) / path.name).rename(path)
+        folders.append(path)
+    return folders
 
 
 def synthetic_case(folder):
@@ -135,18 +162,15 @@ def photo_case(folder):
     return case
 
 
-def load_cases(wanted=None):
+def load_cases(wanted=()):
     """Every case, or those whose name begins with one of the wanted words."""
-    root = prepared_folder()
-    if root is None:
-        raise SystemExit('the evaluation data is not there: put it into ../shared/evaluate, or '
-                         'name its folder in RECEDE_EVALUATE')
-    cases = [synthetic_case(path) for path in sorted((root / 'cases').iterdir())]
-    cases += [photo_case(path) for path in sorted((root / 'photo_cases').iterdir())]
-    if wanted:
-        cases = [case for case in cases if case.name.startswith(tuple(wanted))]
-        if not cases:
-            raise SystemExit(f'no case begins with {" or ".join(wanted)}')
+    wanted = tuple(wanted or ('',))
+    root = working_folder()
+    cases = [synthetic_case(path) for path in rendered_folders(root, wanted)]
+    cases += [photo_case(path) for path in sorted((root / 'photo_cases').iterdir())
+              if path.name.startswith(wanted)]
+    if not cases:
+        raise SystemExit(f'no case begins with {" or ".join(wanted)}')
     return cases
 
 

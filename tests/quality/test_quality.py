@@ -24,8 +24,9 @@ VIEW = View(400, 300, 55, 0)
 HOLE = (110, 90)     # px
 BANDS = 5            # of detail, an octave each
 SLICES = 3           # of the hole, from near to far
-# Steep ones with a clear grain; the method of the paper is compared on the same.
-CASES = ['009', '013', '014', '024']
+# Steep ones: bricks, roof tiles, gravel. Few, because a test may not take minutes; all of them are
+# scored by `./dev bench quality`.
+CASES = ['013', '024', '029']
 
 
 class Tap:
@@ -108,18 +109,17 @@ def evaluation_cases(tap, binary, folder):
     scores = score_all(load_cases(CASES), ['plane', 'paper', 'kwatra'], binary, ['--seed=1'],
                        folder, jobs=os.cpu_count())
     for name, found in scores.items():
-        if errors := [entry['error'] for entry in found.values() if 'error' in entry]:
-            tap.check(False, f'{name}: every method gives a result', errors[0])
-            continue
-        paper, kwatra = (found[method]['terms']['scale'] for method in ('paper', 'kwatra'))
-        tap.check(paper < .7 * kwatra,
-                  f'{name}: the paper keeps the scale clearly better than its baseline',
-                  f'scale: paper {paper:.2f}, kwatra {kwatra:.2f}')
+        errors = [entry['error'] for entry in found.values() if 'error' in entry]
+        tap.check(not errors, f'{name}: every method gives a result', ' '.join(errors))
         plane = found['plane']
         tap.check(plane['score'] >= 80, f'{name}: the plane engine scores at least 80',
                   f'{plane["score"]} {plane["terms"]}')
-        tap.check(plane['changed_outside'] == 0, f'{name}: nothing changes outside the hole',
-                  f'{plane["changed_outside"]} pixels')
+        tap.check(plane.get('changed_outside') == 0, f'{name}: nothing changes outside the hole')
+    # A single case says little about the methods that average: another seed, another answer.
+    paper, kwatra = (np.mean([found[method]['terms'].get('scale', 9) for found in scores.values()])
+                     for method in ('paper', 'kwatra'))
+    tap.check(paper < .7 * kwatra, 'the paper keeps the scale clearly better than its baseline',
+              f'octaves of error: paper {paper:.2f}, kwatra {kwatra:.2f}')
 
 
 def main():
