@@ -20,6 +20,7 @@ from methods import run  # noqa: E402
 from plane_picture import View, draw, hole  # noqa: E402
 from score import score_all  # noqa: E402
 
+DRAWN = ('brick_regular', 'sk_gravel')
 VIEW = View(400, 300, 55, 0)
 HOLE = (110, 90)     # px
 BANDS = 5            # of detail, an octave each
@@ -90,7 +91,7 @@ def fill(binary, folder, truth, mask, *options):
 def drawn_planes(tap, binary, folder):
     mask = hole((VIEW.height, VIEW.width), (VIEW.width / 2, VIEW.height / 2), HOLE)
     errors = {}
-    for name in ('brick_regular', 'sk_gravel'):
+    for name in DRAWN:
         truth = draw(name, VIEW)
         for method in ('plane', 'paper', 'kwatra'):
             result = fill(binary, folder, truth, mask, f'--method={method}')
@@ -98,11 +99,13 @@ def drawn_planes(tap, binary, folder):
             if (name, method) == ('brick_regular', 'plane'):
                 like = likeness(result, truth, mask)
                 tap.check(like > .6, 'bricks go on across the hole', f'correlation {like:.2f}')
-        ours, paper, kwatra = (errors[name, method] for method in ('plane', 'paper', 'kwatra'))
-        said = f'octaves of error: plane {ours:.2f}, paper {paper:.2f}, kwatra {kwatra:.2f}'
-        tap.check(ours < .15, f'{name}: detail of the right size at every depth', said)
-        tap.check(paper < kwatra, f'{name}: the paper keeps the scale better than its baseline',
-                  said)
+        ours = errors[name, 'plane']
+        tap.check(ours < .25, f'{name}: detail of the right size at every depth',
+                  f'{ours:.2f} octaves of error')
+    paper, kwatra = (np.mean([errors[name, method] for name in DRAWN])
+                     for method in ('paper', 'kwatra'))
+    tap.check(paper < .7 * kwatra, 'drawn planes: the paper keeps the scale better than its baseline',
+              f'octaves of error: paper {paper:.2f}, kwatra {kwatra:.2f}')
 
 
 def evaluation_cases(tap, binary, folder):
@@ -118,7 +121,7 @@ def evaluation_cases(tap, binary, folder):
     # A single case says little about the methods that average: another seed, another answer.
     paper, kwatra = (np.mean([found[method]['terms'].get('scale', 9) for found in scores.values()])
                      for method in ('paper', 'kwatra'))
-    tap.check(paper < .7 * kwatra, 'the paper keeps the scale clearly better than its baseline',
+    tap.check(paper < .7 * kwatra, 'cases: the paper keeps the scale better than its baseline',
               f'octaves of error: paper {paper:.2f}, kwatra {kwatra:.2f}')
 
 
