@@ -64,7 +64,8 @@ def scene(name):
     if made is None:
         return None
     picture, mask, options = made
-    folder = CACHE / 'scenes' / digest(name, Path(__file__), Path(plane_picture.__file__), *sorted(TEXTURES.glob('*.png')))
+    made_from = [Path(__file__), Path(plane_picture.__file__), *sorted(TEXTURES.glob('*.png'))]
+    folder = CACHE / 'scenes' / digest(name, *made_from)
     folder.mkdir(parents=True, exist_ok=True)
     for file, content in (('image.ppm', np.where(mask[..., None] > 0, 0, picture)),
                           ('mask.pgm', mask)):

@@ -129,7 +129,7 @@ def peer_result(method, case):
 
 
 def result(method, case, binary, extra, folder):
-    """Fills the case's hole by the method: path of the picture and CPU seconds. May raise Failed."""
+    """Fills the case's hole: path of the picture and CPU seconds. May raise Failed."""
     if method == ORACLE:
         path = case.folder / 'oracle.png'
         if not path.exists():

@@ -104,7 +104,8 @@ def drawn_planes(tap, binary, folder):
                   f'{ours:.2f} octaves of error')
     paper, kwatra = (np.mean([errors[name, method] for name in DRAWN])
                      for method in ('paper', 'kwatra'))
-    tap.check(paper < .7 * kwatra, 'drawn planes: the paper keeps the scale better than its baseline',
+    tap.check(paper < .7 * kwatra,
+              'drawn planes: the paper keeps the scale better than its baseline',
               f'octaves of error: paper {paper:.2f}, kwatra {kwatra:.2f}')
 
 
