@@ -142,9 +142,141 @@ static void frontal_textures_stay_frontal(void) {
   check(NOISE, 0, 0, 4);
 }
 
+static void assert_not_trusted(question *q) {
+  recede_status status = ask(q);
+  if (status == RECEDE_OK) {
+    g_test_message("confidence %.2f", q->answer.confidence);
+    g_assert_cmpfloat(q->answer.confidence, <, RECEDE_CONFIDENCE_LOW);
+  } else {
+    g_assert_cmpint(status, ==, RECEDE_NO_PLANE);
+    g_assert_nonnull(strstr(q->message, "slant"));
+  }
+}
+
+static void what_tells_nothing_is_not_trusted(void) {
+  question *q = new_question();
+  memset(q->gray, 90, sizeof q->gray);
+  g_assert_cmpint(ask(q), ==, RECEDE_NO_PLANE); /* flat colour */
+  for (int i = 0; i < SIDE * SIDE; i++) /* brighter towards the middle row from both sides */
+    q->gray[i] = (guint8)(230 - ABS(i / SIDE - SIDE / 2));
+  assert_not_trusted(q);
+  g_free(q);
+}
+
+/* The upper half recedes upwards and the lower half downwards: no one plane is both. */
+static void two_planes_are_not_trusted(void) {
+  question *q = new_question(), *other = new_question();
+  draw(DOTS, 60, 0, .5 * SIDE, .5 * SIDE, q->gray);
+  draw(DOTS, 60, 180, .5 * SIDE, .5 * SIDE, other->gray);
+  memcpy(q->gray + SIDE * SIDE / 2, other->gray + SIDE * SIDE / 2, SIDE * SIDE / 2);
+  assert_not_trusted(q);
+  g_free(other);
+  g_free(q);
+}
+
+/* A horizon inside the picture: a plain sky above it, the plane below, slant over 90 at the centre.
+ */
+static void horizon_inside_the_picture(void) {
+  question *q = new_question();
+  draw(DOTS, 94, 0, .5 * SIDE, .9 * SIDE, q->gray);
+  for (int y = SIDE - 70; y < SIDE - 40; y++) memset(q->mask + y * SIDE + 160, 255, 60);
+  q->masked = TRUE;
+  g_assert_cmpint(ask(q), ==, RECEDE_OK);
+  g_test_message("%.2f deg off, confidence %.2f", error_deg(&q->answer, 94, 0),
+                 q->answer.confidence);
+  g_assert_cmpfloat(error_deg(&q->answer, 94, 0), <, 4);
+  g_assert_cmpfloat(q->answer.confidence, >, RECEDE_CONFIDENCE_LOW);
+  g_free(q);
+}
+
+static void assert_same_answer(const question *a, const question *b) {
+  g_assert_cmpmem(a->answer.plane.normal, sizeof a->answer.plane.normal, b->answer.plane.normal,
+                  sizeof b->answer.plane.normal);
+  g_assert_cmpfloat(a->answer.confidence, ==, b->answer.confidence);
+}
+
+static void threads_change_nothing(void) {
+  question *one = new_question(), *many = new_question();
+  draw(DOTS, 40, 70, .5 * SIDE, .5 * SIDE, one->gray);
+  memcpy(many->gray, one->gray, sizeof one->gray);
+  one->host.threads = 1;
+  g_assert_cmpint(ask(one), ==, RECEDE_OK);
+  for (int threads = 2; threads <= 3; threads++) {
+    many->host.threads = threads;
+    g_assert_cmpint(ask(many), ==, RECEDE_OK);
+    assert_same_answer(one, many);
+  }
+  g_free(one);
+  g_free(many);
+}
+
+/* What lies inside the mask, or outside the source, is never looked at. */
+static void only_the_source_is_looked_at(void) {
+  question *plain = new_question(), *soiled = new_question();
+  draw(BRICKS, 45, 20, .5 * SIDE, .5 * SIDE, plain->gray);
+  memset(plain->source, 255, sizeof plain->source);
+  for (int y = 120; y < 220; y++) memset(plain->mask + y * SIDE + 100, 255, 150);
+  for (int y = 0; y < 40; y++) memset(plain->source + y * SIDE, 0, SIDE);
+  plain->masked = plain->sourced = TRUE;
+  *soiled = *plain;
+  for (int i = 0; i < SIDE * SIDE; i++)
+    if (soiled->mask[i] || !soiled->source[i]) soiled->gray[i] = (guint8)(255 * chance(i, 0, 7));
+  g_assert_cmpint(ask(plain), ==, RECEDE_OK);
+  g_assert_cmpint(ask(soiled), ==, RECEDE_OK);
+  assert_same_answer(plain, soiled);
+  g_assert_cmpfloat(error_deg(&plain->answer, 45, 20), <, 4);
+  g_free(plain);
+  g_free(soiled);
+}
+
+typedef struct cancelling {
+  int calls, at;
+} cancelling;
+
+static int cancel_at(void *user, const char *stage, double fraction) {
+  cancelling *c = user;
+  (void)stage, (void)fraction;
+  return ++c->calls >= c->at;
+}
+
+static void cancel_works_at_any_poll(void) {
+  question *q = new_question();
+  cancelling c = {0, G_MAXINT};
+  draw(BRICKS, 45, 20, .5 * SIDE, .5 * SIDE, q->gray);
+  q->host.progress = cancel_at, q->host.user = &c;
+  g_assert_cmpint(ask(q), ==, RECEDE_OK);
+  int polls = c.calls;
+  g_assert_cmpint(polls, >, 2);
+  for (int at = 1; at < polls / 2; at++) {
+    c = (cancelling){0, at};
+    g_assert_cmpint(ask(q), ==, RECEDE_CANCELLED);
+  }
+  g_free(q);
+}
+
+static void a_failing_allocation_is_told(void) {
+  question *q = new_question();
+  draw(BRICKS, 45, 20, .5 * SIDE, .5 * SIDE, q->gray);
+  recede_status status = RECEDE_NO_MEMORY;
+  for (int n = 1; status == RECEDE_NO_MEMORY; n++) {
+    q->host.fail_allocation = (uint64_t)n;
+    status = ask(q);
+    g_assert_true(status == RECEDE_OK || status == RECEDE_NO_MEMORY);
+    g_assert_cmpint(n, <, 200);
+  }
+  g_free(q);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/orient/known", known_planes_are_read);
   g_test_add_func("/orient/frontal", frontal_textures_stay_frontal);
+  g_test_add_func("/orient/nothing", what_tells_nothing_is_not_trusted);
+  g_test_add_func("/orient/two-planes", two_planes_are_not_trusted);
+  g_test_add_func("/orient/horizon-inside", horizon_inside_the_picture);
+  g_test_add_func("/orient/threads", threads_change_nothing);
+  g_test_add_func("/orient/source-only", only_the_source_is_looked_at);
+  g_test_add_func("/orient/cancel", cancel_works_at_any_poll);
+  g_test_add_func("/orient/no-memory", a_failing_allocation_is_told);
   return g_test_run();
 }
