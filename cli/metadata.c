@@ -34,7 +34,7 @@ static void clear(metadata_parts *parts) {
     if (*all[i]) g_byte_array_unref(*all[i]);
 }
 
-static metadata_parts parts_of(const image_file *from) {
+static metadata_parts parts_of(const image_file *from, bool keep) {
   metadata_parts parts = {NULL};
   if (!from) return parts;
   parts.dpi_x = from->info.dpi_x;
@@ -42,7 +42,7 @@ static metadata_parts parts_of(const image_file *from) {
   const char *kind = from->format->codec;
   const uint8_t *bytes = from->bytes.data;
   if (strcmp(kind, "jpeg") == 0) metadata_from_jpeg(bytes, from->bytes.size, &parts);
-  if (strcmp(kind, "png") == 0) metadata_from_png(bytes, from->bytes.size, &parts);
+  if (strcmp(kind, "png") == 0) metadata_from_png(bytes, from->bytes.size, keep, &parts);
   if (strcmp(kind, "tiff") == 0) metadata_from_tiff(bytes, from->bytes.size, &parts);
   return parts;
 }
@@ -51,17 +51,16 @@ static metadata_parts parts_of(const image_file *from) {
 bool metadata_carries_orientation(const image_file *from, const image_format *format) {
   if (strcmp(format->codec, "tiff") == 0 || strcmp(format->codec, "openexr") == 0) return true;
   if (strcmp(format->codec, "jpeg") != 0 && strcmp(format->codec, "png") != 0) return false;
-  metadata_parts parts = parts_of(from);
+  metadata_parts parts = parts_of(from, true);
   bool has_block = parts.exif != NULL;
   clear(&parts);
   return has_block;
 }
 
-/* Another picture: its profile was written by the encoder, its resolution is all that is left; from
- * PNG to PNG the profile's chunks stay too. */
-static void drop_what_described_the_picture(metadata_parts *parts, bool png) {
-  GByteArray **all[] = {&parts->exif, &parts->xmp, &parts->iptc, &parts->comment, &parts->chunks};
-  for (size_t i = 0; i < (png ? 4 : 5); i++) {
+/* For another picture: its colours and resolution are all that is left. */
+static void drop_description(metadata_parts *parts) {
+  GByteArray **all[] = {&parts->exif, &parts->xmp, &parts->iptc, &parts->comment};
+  for (size_t i = 0; i < G_N_ELEMENTS(all); i++) {
     if (*all[i]) g_byte_array_unref(*all[i]);
     *all[i] = NULL;
   }
@@ -72,8 +71,8 @@ image_status metadata_carry(const image_file *from, const image_format *format, 
   bool lost = false;
   GByteArray *made = NULL;
   bool png = strcmp(format->codec, "png") == 0;
-  metadata_parts parts = parts_of(from);
-  if (!keep) drop_what_described_the_picture(&parts, png);
+  metadata_parts parts = parts_of(from, keep);
+  if (!keep) drop_description(&parts);
   if (png) made = metadata_into_png(bytes->data, bytes->size, &parts, &lost);
   if (strcmp(format->codec, "jpeg") == 0)
     made = metadata_into_jpeg(bytes->data, bytes->size, &parts, &lost);

@@ -17,11 +17,11 @@ typedef struct metadata_parts {
 
 /* Take what they find; NULL parts stay NULL. The bytes come from a file that was read well. */
 void metadata_from_jpeg(const uint8_t *bytes, size_t size, metadata_parts *parts);
-void metadata_from_png(const uint8_t *bytes, size_t size, metadata_parts *parts);
+/* texts: those too that describe the picture, not only its colours and resolution. */
+void metadata_from_png(const uint8_t *bytes, size_t size, bool texts, metadata_parts *parts);
 void metadata_from_tiff(const uint8_t *bytes, size_t size, metadata_parts *parts);
 
-/* Return the encoded file with the parts put in. *lost is set where one does not fit. from: for a
- * TIFF, the bytes of the TIFF that the tags come from directly, or NULL. */
+/* Return the encoded file with the parts put in. *lost is set where one does not fit. */
 GByteArray *metadata_into_jpeg(const uint8_t *bytes, size_t size, const metadata_parts *parts,
                                bool *lost);
 GByteArray *metadata_into_png(const uint8_t *bytes, size_t size, const metadata_parts *parts,

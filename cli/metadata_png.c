@@ -29,7 +29,9 @@ static bool is_one_of(const chunk *found, const char *names) {
   return strstr(names, found->name) != NULL;
 }
 
-void metadata_from_png(const uint8_t *bytes, size_t size, metadata_parts *parts) {
+void metadata_from_png(const uint8_t *bytes, size_t size, bool texts, metadata_parts *parts) {
+  const char *taken =
+      texts ? "iCCP sRGB gAMA cHRM cICP pHYs tEXt zTXt iTXt" : "iCCP sRGB gAMA cHRM cICP pHYs";
   chunk found;
   parts->chunks = g_byte_array_new();
   for (size_t at = SIGNATURE; next_chunk(bytes, size, &at, &found);) {
@@ -39,7 +41,7 @@ void metadata_from_png(const uint8_t *bytes, size_t size, metadata_parts *parts)
     } else if (strcmp(found.name, "iTXt") == 0 && found.size > sizeof XMP_HEAD &&
                memcmp(found.data, XMP_HEAD, sizeof XMP_HEAD) == 0) {
       parts->xmp = metadata_copy(found.data + sizeof XMP_HEAD, found.size - sizeof XMP_HEAD);
-    } else if (is_one_of(&found, "iCCP sRGB gAMA cHRM cICP pHYs tEXt zTXt iTXt")) {
+    } else if (is_one_of(&found, taken)) {
       g_byte_array_append(parts->chunks, found.whole, (guint)found.whole_size);
     }
   }

@@ -1,0 +1,195 @@
+"""Files that are damaged, that lie, or that are no pictures: exit code 3 (5 where only too large),
+within 10 s and 2 GB, and never a crash."""
+import os
+import random
+import resource
+import struct
+import subprocess
+import sys
+import time
+import zlib
+
+import numpy as np
+
+import harness
+from harness import check, texture, write
+
+MOST_BYTES = 2 << 30
+MOST_SECONDS = 10
+SANITIZED = "ASAN_OPTIONS" in os.environ  # ASan's shadow does not fit in any limit of addresses
+
+
+def limit():
+    if not SANITIZED:
+        resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
+        resource.setrlimit(resource.RLIMIT_CPU, (MOST_SECONDS, MOST_SECONDS))
+
+
+def read_with(path, *more):
+    """Has the command read all pixels of the file; returns its exit code."""
+    out = path.parent / "out.png"
+    done = harness.recede("scale-map", path, "--frontal", "--force", "-q", "-o", out, *more,
+                          code=None, prepare=limit)
+    text = done.stderr.decode(errors="replace")
+    check(done.returncode in (0, 3, 5), path.name, "ended with", done.returncode, text)
+    check(done.returncode == 0 or "recede: " in text, path.name, "says nothing")
+    return done.returncode
+
+
+def refused(path, codes=(3,)):
+    began = time.monotonic()
+    code = read_with(path)
+    check(code in codes, path.name, "ended with", code)
+    check(time.monotonic() - began < 60, path.name, "took too long")
+
+
+def originals(folder):
+    """A sound file of every format, with noise so that nothing is long runs."""
+    pixels = texture(40, 56)
+    made = {}
+    for suffix in ("png", "jpg", "tif", "exr", "bmp", "ppm"):
+        kind = texture(40, 56, kind="half") if suffix == "exr" else pixels
+        made[suffix] = write(folder / f"sound.{suffix}", kind, half=True).read_bytes()
+    subprocess.run(["convert", str(folder / "sound.png"), "-interlace", "Plane",
+                    str(folder / "progressive.jpg")], check=True)
+    made["progressive.jpg"] = (folder / "progressive.jpg").read_bytes()
+    subprocess.run(["convert", str(folder / "sound.png"), "-depth", "16", "-compress", "LZW",
+                    str(folder / "lzw.tif")], check=True)
+    made["lzw.tif"] = (folder / "lzw.tif").read_bytes()
+    return made
+
+
+def test_sound_files_are_read(folder):
+    """Or else the tests below would prove nothing."""
+    for suffix, data in originals(folder).items():
+        path = folder / f"x.{suffix}"
+        path.write_bytes(data)
+        check(read_with(path) == 0, suffix)
+
+
+def test_cut_files_are_refused(folder):
+    for suffix, data in originals(folder).items():
+        for part in (.01, .1, .3, .5, .7, .9, .97):
+            path = folder / f"cut-{part}.{suffix}"
+            path.write_bytes(data[:max(1, int(len(data) * part))])
+            refused(path)
+
+
+def test_flipped_bits(folder):
+    source = random.Random(1)
+    for suffix, data in originals(folder).items():
+        for number in range(10):
+            damaged = bytearray(data)
+            # Half of them in the first bytes, where the headers are.
+            end = min(400, len(data)) if number % 2 else len(data)
+            for _ in range(1 + number // 3):
+                damaged[source.randrange(end)] ^= 1 << source.randrange(8)
+            path = folder / f"flip-{number}.{suffix}"
+            path.write_bytes(damaged)
+            read_with(path)
+
+
+def test_overwritten_blocks(folder):
+    source = random.Random(2)
+    for suffix, data in originals(folder).items():
+        for number in range(5):
+            damaged = bytearray(data)
+            length = source.randrange(4, 200)
+            start = source.randrange(8, max(9, len(data) - length))
+            filler = [b"\0" * length, b"\xff" * length, source.randbytes(length)][number % 3]
+            damaged[start:start + length] = filler
+            path = folder / f"block-{number}.{suffix}"
+            path.write_bytes(damaged)
+            read_with(path)
+
+
+def test_parts_taken_out_or_doubled(folder):
+    source = random.Random(3)
+    for suffix, data in originals(folder).items():
+        for number in range(4):
+            start = source.randrange(8, len(data) - 60)
+            piece = data[start:start + source.randrange(1, 50)]
+            rest = data[start + len(piece):]
+            damaged = data[:start] + (piece * 2 if number % 2 else b"") + rest
+            path = folder / f"shift-{number}.{suffix}"
+            path.write_bytes(damaged)
+            read_with(path)
+
+
+def test_no_pictures(folder):
+    contents = {"text": b"This is no picture.\n" * 50, "zeros": bytes(5000), "one": b"\x89",
+                "html": b"<html><body>404</body></html>", "pdf": b"%PDF-1.4\n" + bytes(300),
+                "elf": open("/proc/self/exe", "rb").read(5000), "gif": b"GIF89a" + bytes(50),
+                "noise": random.Random(4).randbytes(3000), "newlines": b"\n" * 999}
+    for name, content in contents.items():
+        for suffix in ("png", "jpg", "tif", "tga"):
+            path = folder / f"{name}.{suffix}"
+            path.write_bytes(content)
+            refused(path)
+
+
+def png_chunk(name, data):
+    return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+
+def png_of(width, height, data, bits=8, colour=2):
+    head = struct.pack(">IIBBBBB", width, height, bits, colour, 0, 0, 0)
+    return (b"\x89PNG\r\n\x1a\n" + png_chunk(b"IHDR", head) + png_chunk(b"IDAT", data)
+            + png_chunk(b"IEND", b""))
+
+
+def tiff_of(width, height):
+    tags = [(256, 4, 1, width), (257, 4, 1, height), (258, 3, 1, 8), (259, 3, 1, 1),
+            (262, 3, 1, 1), (273, 4, 1, 8), (277, 3, 1, 1), (278, 4, 1, height), (279, 4, 1, 99)]
+    return (b"II*\0\x08\0\0\0" + struct.pack("<H", len(tags))
+            + b"".join(struct.pack("<HHII", *tag) for tag in tags) + bytes(104))
+
+
+def bombs(folder):
+    small = zlib.compress(bytes(1000))
+    jpeg = bytearray(originals(folder)["jpg"])
+    frame = jpeg.index(b"\xff\xc0")
+    jpeg[frame + 5:frame + 9] = struct.pack(">HH", 65500, 65500)
+    exr = bytearray(originals(folder)["exr"])
+    window = exr.index(b"dataWindow\0box2i\0") + len(b"dataWindow\0box2i\0") + 4
+    exr[window:window + 16] = struct.pack("<iiii", 0, 0, 200000, 200000)
+    bmp = bytearray(originals(folder)["bmp"])
+    bmp[18:26] = struct.pack("<ii", 60000, 60000)
+    return {"60000.png": png_of(60000, 60000, small), "most.png": png_of(2**31 - 1, 2**31 - 1, small),
+            "wide.png": png_of(2**31 - 1, 1, small), "deep.png": png_of(50000, 50000, small, 16, 6),
+            "60000.tif": tiff_of(60000, 60000), "most.tif": tiff_of(2**32 - 1, 2**32 - 1),
+            "negative.tif": tiff_of(2**31, 2**31), "65500.jpg": bytes(jpeg), "wide.exr": bytes(exr),
+            "60000.bmp": bytes(bmp), "60000.ppm": b"P6\n60000 60000\n255\n" + bytes(100),
+            "most.ppm": b"P6\n2147483647 2147483647\n255\n" + bytes(100),
+            "60000.hdr": b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n" + bytes(99)}
+
+
+def test_bombs_are_refused(folder):
+    for name, data in bombs(folder).items():
+        path = folder / name
+        path.write_bytes(data)
+        refused(path, codes=(3, 5))
+
+
+def test_a_true_bomb_takes_no_memory(folder):
+    """20000 x 20000 px of zeros in 1.2 MB: sound, and refused by the limit, not by exhaustion."""
+    packer = zlib.compressobj(9)
+    row = bytes(20000 * 3 + 1)
+    data = b"".join(packer.compress(row) for _ in range(20000)) + packer.flush()
+    path = folder / "true.png"
+    path.write_bytes(png_of(20000, 20000, data))
+    refused(path, codes=(5,))
+
+
+def test_a_cut_mask_is_refused(folder):
+    mask = np.full((40, 56), 255, np.uint8)
+    mask[:30] = 0
+    image = write(folder / "in.png", texture(40, 56))
+    data = write(folder / "mask.png", mask).read_bytes()
+    (folder / "mask.png").write_bytes(data[:len(data) // 2])
+    harness.recede("fill", image, "--mask", folder / "mask.png", "--frontal", "-o",
+                   folder / "out.png", code=3)
+
+
+if __name__ == "__main__":
+    sys.exit(harness.main(globals()))

@@ -1,0 +1,235 @@
+"""Output files are whole or untouched: full disks, signals, kill -9, two writers."""
+import os
+import random
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import harness
+from harness import check, hole, read, recede, same_bits, strays, texture, write
+
+SUFFIXES = {"png": "u8", "jpg": "u8", "tif": "u16", "exr": "half"}
+OLD = b"the old file, which must stay as it is\n" * 20
+
+
+def job(folder, suffix="png", kind="u8"):
+    """Arguments of a fill into out.suffix, which is what a complete output is compared with."""
+    image = write(folder / f"in.{suffix}", texture(kind=kind), half=kind == "half")
+    mask = write(folder / "mask.png", hole())
+    return ["fill", image, "--mask", mask, "--frontal", "-q"]
+
+
+def expected(folder, arguments, suffix="png"):
+    out = folder / f"expected.{suffix}"
+    recede(*arguments, "-o", out, "--force")
+    return out.read_bytes()
+
+
+def start(*arguments):
+    return subprocess.Popen([harness.RECEDE, *map(str, arguments)], stderr=subprocess.PIPE,
+                            stdout=subprocess.DEVNULL)
+
+
+def test_refuses_to_overwrite(folder):
+    arguments = job(folder)
+    out = folder / "out.png"
+    out.write_bytes(OLD)
+    check(b"--force" in recede(*arguments, "-o", out, code=4).stderr)
+    check(out.read_bytes() == OLD)
+    recede(*arguments, "-o", out, "--force")
+    check(out.read_bytes() == expected(folder, arguments))
+
+
+def test_places_that_cannot_be_written(folder):
+    arguments = job(folder)
+    recede(*arguments, "-o", folder / "none" / "out.png", code=4)
+    recede(*arguments, "-o", folder / "in.png" / "out.png", code=4)
+    (folder / "dir.png").mkdir()
+    recede(*arguments, "-o", folder / "dir.png", "--force", code=4)
+    recede(*arguments, "-o", folder / ("n" * 300 + ".png"), code=4)
+    recede(*arguments, "-o", "/proc/out.png", code=4)
+    os.mkfifo(folder / "pipe.png")
+    recede(*arguments, "-o", folder / "pipe.png", "--force", code=4)
+    if os.geteuid() != 0:  # root may write anywhere
+        (folder / "locked").mkdir(mode=0o500)
+        recede(*arguments, "-o", folder / "locked" / "out.png", code=4)
+
+
+def test_the_input_may_be_the_output(folder):
+    arguments = job(folder)
+    whole = expected(folder, arguments)
+    recede(*arguments, "-o", folder / "in.png", "--force")
+    check((folder / "in.png").read_bytes() == whole)
+
+
+def test_links_and_permissions_stay(folder):
+    arguments = job(folder)
+    target = folder / "target.png"
+    target.write_bytes(OLD)
+    target.chmod(0o640)
+    (folder / "link.png").symlink_to("target.png")
+    recede(*arguments, "-o", folder / "link.png", "--force")
+    check((folder / "link.png").is_symlink() and target.read_bytes() == expected(folder, arguments))
+    check(target.stat().st_mode & 0o777 == 0o640, oct(target.stat().st_mode))
+    recede(*arguments, "-o", folder / "new.png", prepare=lambda: os.umask(0o027))
+    check((folder / "new.png").stat().st_mode & 0o777 == 0o640)
+
+
+def check_failed_write(folder, arguments, suffix, where, **options):
+    """A write that fails ends with 4; a file that was there stays, none appears that was not."""
+    out, old = where / f"out.{suffix}", where / f"old.{suffix}"
+    done = recede(*arguments, "-o", out, code=None, **options)
+    if done.returncode == 0:
+        out.unlink()
+        return False
+    check(done.returncode == 4 and not out.exists(), suffix, done.returncode, out.exists())
+    recede(*arguments, "-o", old, "--force", code=4, **options)
+    check(old.read_bytes() == OLD, suffix, "the old file changed")
+    check(not strays(where), suffix, "left", strays(where))
+    return True
+
+
+def noisy_job(folder, suffix, kind):
+    """An output of some hundred kB: noise packs badly."""
+    noise = random.Random(5).randbytes(220 * 220 * 3)
+    pixels = harness.np.frombuffer(noise, harness.np.uint8).reshape(220, 220, 3)
+    if kind != "u8":
+        pixels = pixels.astype(harness.np.uint16) * 257 if kind == "u16" \
+            else (pixels / 255).astype(harness.np.float32)
+    image = write(folder / f"in.{suffix}", pixels, half=kind == "half")
+    mask = write(folder / "mask.png", hole(220, 220))
+    return ["fill", image, "--mask", mask, "--frontal", "-q", "--quality", "draft"]
+
+
+def test_file_size_limit(folder):
+    for suffix, kind in SUFFIXES.items():
+        arguments = noisy_job(folder, suffix, kind)
+        (folder / f"old.{suffix}").write_bytes(OLD)
+        size = len(expected(folder, arguments, suffix))
+        for part in (0, .001, .2, .5, .9, .9999):
+            bytes_left = int(size * part)
+            check(check_failed_write(folder, arguments, suffix, folder, prepare=lambda b=bytes_left:
+                                     resource.setrlimit(resource.RLIMIT_FSIZE, (b, b))),
+                  suffix, bytes_left, "of", size, "were enough")
+
+
+def test_full_disk(folder):
+    """A small file system in memory, filled but for 0 .. 100 % of what the output takes."""
+    disk = folder / "disk"
+    disk.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", str(disk)],
+                      stderr=subprocess.DEVNULL, check=False).returncode != 0:
+        raise harness.Skip("mounting a file system is not allowed here")
+    try:
+        for suffix, kind in SUFFIXES.items():
+            fill_up(folder, disk, suffix, kind)
+    finally:
+        subprocess.run(["umount", "--lazy", str(disk)], check=True)
+
+
+def fill_up(folder, disk, suffix, kind):
+    arguments = noisy_job(folder, suffix, kind)
+    size = len(expected(folder, arguments, suffix))
+    failed = 0
+    for number in range(13):
+        for path in disk.iterdir():
+            path.unlink()
+        (disk / f"old.{suffix}").write_bytes(OLD)
+        free = os.statvfs(disk).f_bavail * os.statvfs(disk).f_frsize
+        (disk / "ballast").write_bytes(bytes(max(0, free - size * number // 12 // 4096 * 4096)))
+        failed += check_failed_write(folder, arguments, suffix, disk)
+    check(failed >= 12, suffix, "only", failed, "of 13 disks were full")
+
+
+def test_kill_at_any_moment(folder):
+    """After kill -9 the output is absent (or the old one) or complete."""
+    source = random.Random(6)
+    ends = {"absent": 0, "old": 0, "complete": 0}
+    for suffix, kind in SUFFIXES.items():
+        arguments = job(folder, suffix, kind)
+        began = time.monotonic()
+        whole = expected(folder, arguments, suffix)
+        usual = time.monotonic() - began
+        out = folder / f"out.{suffix}"
+        for number in range(25):
+            out.unlink(missing_ok=True)
+            if number % 2:
+                out.write_bytes(OLD)
+            run = start(*arguments, "-o", out, "--force")
+            time.sleep(source.uniform(.1, 1.2) * usual)
+            run.kill()
+            run.communicate()
+            content = out.read_bytes() if out.exists() else None
+            check(content in ((OLD, whole) if number % 2 else (None, whole)), suffix, "torn")
+            ends["complete" if content == whole else "old" if content else "absent"] += 1
+    print("#", ends)
+    for path in strays(folder):  # allowed after kill -9, under this name
+        check(path.name.endswith(".tmp"))
+        path.unlink()
+
+
+def test_signals(folder):
+    """SIGINT and SIGTERM at any moment: 128 + number, no output, nothing left."""
+    image = write(folder / "in.png", texture(96, 128))
+    for number, stop in enumerate((signal.SIGINT, signal.SIGTERM) * 3):
+        out = folder / f"{number}.png"
+        run = start("synthesize", image, "--size", "500x400", "--slant", "40", "--method", "paper",
+                    "--quality", "best", "-o", out, "-q")
+        time.sleep((.3, .7, 1.2)[number // 2])
+        run.send_signal(stop)
+        began = time.monotonic()
+        run.communicate(timeout=60)
+        # Before the handlers stand, a signal ends the process as it ends any.
+        check(run.returncode in (128 + stop, -stop), "ended with", run.returncode)
+        check(time.monotonic() - began < 10, "took", time.monotonic() - began, "s to stop")
+        check(not out.exists())
+
+
+def test_a_pending_signal_while_writing(folder):
+    """The signal comes while a large file is written: the temporary goes."""
+    arguments = noisy_job(folder, "tif", "u16")
+    old = folder / "old.tif"
+    old.write_bytes(OLD)
+    whole = expected(folder, arguments, "tif")
+    for number in range(6):
+        run = start(*arguments, "-o", old, "--force")
+        while run.poll() is None and not strays(folder):
+            time.sleep(.0005)
+        run.send_signal(signal.SIGTERM)
+        run.communicate(timeout=60)
+        check(run.returncode in (0, 143), run.returncode)
+        check(old.read_bytes() in (OLD, whole), "torn")
+        check(not strays(folder), "left", strays(folder))
+        old.write_bytes(OLD)
+
+
+def test_two_writers(folder):
+    arguments = job(folder)
+    whole = expected(folder, arguments)
+    out = folder / "out.png"
+    for round_ in range(5):
+        runs = [start(*arguments, "-o", out) for _ in range(3)]
+        codes = sorted((run.communicate(), run.returncode)[1] for run in runs)
+        check(codes == [0, 4, 4], round_, codes)
+        check(out.read_bytes() == whole)
+        out.unlink()
+    runs = [start(*arguments, "-o", out, "--force") for _ in range(3)]
+    check([(run.communicate(), run.returncode)[1] for run in runs] == [0, 0, 0])
+    check(same_bits(read(out), read(folder / "expected.png")))
+
+
+def test_standard_output_full(folder):
+    if not Path("/dev/full").exists():
+        raise harness.Skip("no /dev/full here")
+    with open("/dev/full", "w", encoding="ascii") as full:
+        run = subprocess.run([harness.RECEDE, *map(str, job(folder)), "-o", folder / "out.png",
+                              "--json", "-"], stdout=full, stderr=subprocess.PIPE, check=False,
+                             timeout=60)
+    check(run.returncode == 4, run)
+
+
+if __name__ == "__main__":
+    sys.exit(harness.main(globals()))
