@@ -6,6 +6,7 @@
 #define CELL .06       /* a square's width at the hole, of the image's long side */
 #define REACH 24       /* squares drawn to each side, and towards the viewer */
 #define REACH_FAR 120  /* and towards the horizon */
+#define FAR 1e6        /* squares, of a line that goes on to the vanishing point */
 #define DENSEST_PX 4   /* lines closer than this on the screen are left out */
 #define NEAREST_W 1e-3 /* of w at the hole: nothing is drawn nearer to the horizon */
 #define MARGIN .06     /* around the image, as far as handles are shown */
@@ -102,7 +103,10 @@ static void squares(cairo_t *cairo, const homography *h, double zoom) {
   line(cairo, h, -REACH, 0, REACH, 0);
   int up = lines_across(cairo, h, 1, REACH_FAR, zoom);
   int down = lines_across(cairo, h, -1, -REACH_FAR, zoom);
-  for (int u = -REACH; u <= REACH; u++) line(cairo, h, u, down, u, up);
+  for (int u = -REACH; u <= REACH; u++) {
+    gboolean on = u % 4 == 0; /* some go on to the vanishing point */
+    line(cairo, h, u, on ? -FAR : down, u, on ? FAR : up);
+  }
   stroke_twice(cairo, zoom, .3, 1, 1, 1);
 }
 

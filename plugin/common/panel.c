@@ -21,6 +21,7 @@ struct rp_panel {
   gpointer user;
   rp_scene scene;
   rp_background estimate, draft;
+  rp_worker *worker; /* of the run that OK asked for */
   guchar *draft_pixels;
   guint draft_timer;
   gboolean setting;   /* the panel itself is moving the controls */
@@ -291,12 +292,27 @@ void rp_panel_free(rp_panel *panel) {
 
 /* -------------------------------------------------------------------------------------- run -- */
 
-static gboolean tell(const rp_state *state, gpointer user) {
+static gboolean show_state(gpointer user) {
   rp_panel *panel = user;
-  say(panel, rp_stage_label(state->stage));
-  gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(panel->progress), CLAMP(state->fraction, 0, 1));
-  while (gtk_events_pending()) gtk_main_iteration();
-  return panel->cancelled;
+  rp_state state = rp_worker_state(panel->worker);
+  const char *label = rp_stage_label(state.stage);
+  if (strcmp(label, gtk_label_get_text(GTK_LABEL(panel->status))) != 0) say(panel, label);
+  gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(panel->progress), CLAMP(state.fraction, 0, 1));
+  return G_SOURCE_CONTINUE;
+}
+
+/* The dialog lives on meanwhile. */
+static void run_with_dialog(rp_request *request, gpointer user) {
+  rp_panel *panel = user;
+  panel->worker = rp_worker_start(request);
+  show_state(panel);
+  guint ticks = g_timeout_add(RP_TELL_EVERY_MS, show_state, panel);
+  while (!rp_worker_state(panel->worker).finished) {
+    gtk_main_iteration(); /* waits for the next tick at the longest */
+    if (panel->cancelled) rp_worker_cancel(panel->worker);
+  }
+  g_source_remove(ticks);
+  rp_worker_finish(&panel->worker);
 }
 
 static void on_response(GtkDialog *dialog, gint response, gpointer user) {
@@ -315,8 +331,8 @@ static rp_outcome run(rp_panel *panel, GtkWidget *dialog, rp_request *request, c
   gulong response = g_signal_connect(dialog, "response", G_CALLBACK(on_response), panel);
   gulong closing = g_signal_connect(dialog, "delete-event", G_CALLBACK(keep_open), panel);
   panel->cancelled = FALSE;
-  rp_outcome outcome =
-      rp_compute(panel->host, panel->settings, panel->picture, request, tell, panel, message);
+  rp_outcome outcome = rp_compute(panel->host, panel->settings, panel->picture, request,
+                                  run_with_dialog, panel, message);
   g_signal_handler_disconnect(dialog, response);
   g_signal_handler_disconnect(dialog, closing);
   return outcome;

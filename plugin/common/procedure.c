@@ -23,8 +23,7 @@ static gboolean take_source(const rp_host *host, const rp_settings *settings, rp
 }
 
 rp_outcome rp_compute(const rp_host *host, const rp_settings *settings, rp_picture *picture,
-                      rp_request *request, gboolean (*tell)(const rp_state *state, gpointer user),
-                      gpointer user, char **message) {
+                      rp_request *request, rp_runner run_it, gpointer user, char **message) {
   recede_params params;
   if (!rp_settings_params(settings, &params, message)) return RP_CALLING_ERROR;
   if (!take_source(host, settings, picture, message)) return RP_CALLING_ERROR;
@@ -33,7 +32,7 @@ rp_outcome rp_compute(const rp_host *host, const rp_settings *settings, rp_pictu
     return RP_FAILED;
   }
   request->threads = rp_host_threads();
-  rp_worker_run(request, tell, user);
+  run_it(request, user);
   if (request->status == RECEDE_OK) return RP_DONE;
   if (request->status == RECEDE_CANCELLED) return RP_CANCELLED;
   *message = rp_failure(request);
@@ -71,15 +70,20 @@ static const char *write_result(rp_host *host, const rp_settings *settings,
   return written ? NULL : rp_no_memory();
 }
 
-static gboolean tell_gimp(const rp_state *state, gpointer user) {
-  (void)user; /* GIMP's own Cancel ends the process: the image has not been touched */
-  rp_host_progress(rp_stage_label(state->stage), state->fraction);
-  return FALSE;
+/* GIMP's own Cancel ends the process: the image has not been touched. */
+static void run_with_gimps_progress(rp_request *request, gpointer user) {
+  rp_worker *worker = rp_worker_start(request);
+  rp_state state;
+  (void)user;
+  while (!(state = rp_worker_wait(worker)).finished)
+    rp_host_progress(rp_stage_label(state.stage), state.fraction);
+  rp_worker_finish(&worker);
 }
 
 static rp_outcome obtain_result(rp_host *host, rp_settings *settings, gboolean with_dialog,
                                 rp_picture *picture, rp_request *request, char **message) {
-  if (!with_dialog) return rp_compute(host, settings, picture, request, tell_gimp, NULL, message);
+  if (!with_dialog)
+    return rp_compute(host, settings, picture, request, run_with_gimps_progress, NULL, message);
   return rp_host_dialog(host, settings, picture, request) ? RP_DONE : RP_CANCELLED;
 }
 

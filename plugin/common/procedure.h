@@ -10,9 +10,11 @@ typedef enum { RP_DONE, RP_CANCELLED, RP_CALLING_ERROR, RP_FAILED } rp_outcome;
 rp_outcome rp_procedure_run(rp_host *host, rp_settings *settings, gboolean with_dialog,
                             char **message);
 
-/* One run on a picture that was read; tell as in rp_worker_run(). */
+/* Does the run that request asks for; returns when it is over. */
+typedef void (*rp_runner)(rp_request *request, gpointer user);
+
+/* One run on a picture that was read. */
 rp_outcome rp_compute(const rp_host *host, const rp_settings *settings, rp_picture *picture,
-                      rp_request *request, gboolean (*tell)(const rp_state *state, gpointer user),
-                      gpointer user, char **message);
+                      rp_request *request, rp_runner run, gpointer user, char **message);
 
 #endif

@@ -1,8 +1,6 @@
 /* One run of the core in a thread of its own. */
 #include "worker.h"
 
-#define TELL_EVERY_US (33 * G_TIME_SPAN_MILLISECOND)
-
 struct rp_worker {
   GThread *thread;
   recede_job *job;
@@ -96,23 +94,12 @@ void rp_worker_finish(rp_worker **worker) {
   *worker = NULL;
 }
 
-static rp_state wait_a_little(rp_worker *worker) {
-  gint64 until = g_get_monotonic_time() + TELL_EVERY_US;
+rp_state rp_worker_wait(rp_worker *worker) {
+  gint64 until = g_get_monotonic_time() + RP_TELL_EVERY_MS * G_TIME_SPAN_MILLISECOND;
   g_mutex_lock(&worker->mutex);
   while (!worker->state.finished)
     if (!g_cond_wait_until(&worker->changed, &worker->mutex, until)) break;
   rp_state state = worker->state;
   g_mutex_unlock(&worker->mutex);
   return state;
-}
-
-void rp_worker_run(rp_request *request, gboolean (*tell)(const rp_state *state, gpointer user),
-                   gpointer user) {
-  rp_worker *worker = rp_worker_start(request);
-  rp_state state = rp_worker_state(worker);
-  while (!state.finished) {
-    if (tell(&state, user)) rp_worker_cancel(worker);
-    state = wait_a_little(worker);
-  }
-  rp_worker_finish(&worker);
 }

@@ -39,9 +39,9 @@ void rp_worker_cancel(rp_worker *worker);
 /* Waits for the end of the run and frees the worker. */
 void rp_worker_finish(rp_worker **worker);
 
-/* Starts, waits and finishes, calling tell about thirty times a second; it returns TRUE to cancel.
- */
-void rp_worker_run(rp_request *request, gboolean (*tell)(const rp_state *state, gpointer user),
-                   gpointer user);
+/* Waits for the end, but only so long that progress can be shown smoothly. */
+rp_state rp_worker_wait(rp_worker *worker);
+
+#define RP_TELL_EVERY_MS 33
 
 #endif

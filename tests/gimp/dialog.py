@@ -1,0 +1,264 @@
+#!/usr/bin/env python3
+"""The fill's dialog in a real window: what a user does, by GIMP's menus and accessibility tree.
+
+windowed.sh dialog.py HOST PLUGIN PICTURE ARTEFACTS: screenshots are kept in ARTEFACTS.
+"""
+import math
+import socket
+import sys
+import time
+from pathlib import Path
+
+import cv2
+import numpy as np
+import xcf
+from host import PRELUDE, Host, Tap
+from window import Window, plain, wait_for, walk
+
+FOV, WIDTH, HEIGHT = 50, 960, 540
+MARGIN = .07  # plugin/common/scene.c
+SELECTION = (330, 380, 300, 130)
+
+IMAGE = {"2": "(define i (vector-ref (cadr (gimp-image-list)) 0))",
+         "3": "(define i (vector-ref (car (gimp-get-images)) 0))"}
+SELECT = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE {} {} {} {})"
+
+
+class Server:
+    """Script-Fu's server in the GIMP under test."""
+
+    def __init__(self, host):
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            self.port = free.getsockname()[1]
+        log = host.folder / "server.log"
+        self.script = (
+            f'(plug-in-script-fu-server RUN-NONINTERACTIVE "127.0.0.1" {self.port} "{log}")'
+            if host.name == "2" else
+            f'(plug-in-script-fu-server #:run-mode RUN-NONINTERACTIVE #:ip "127.0.0.1"'
+            f' #:port {self.port} #:logfile "{log}")')
+
+    def run(self, script):
+        def connect():
+            return socket.create_connection(("127.0.0.1", self.port), 60)
+        with wait_for(connect, 30) as link:
+            data = script.encode()
+            link.sendall(b"G" + len(data).to_bytes(2, "big") + data)
+            head = link.recv(4, socket.MSG_WAITALL)
+            text = link.recv(int.from_bytes(head[2:], "big"), socket.MSG_WAITALL).decode()
+        return head[1] == 0, text
+
+    def save(self, path):
+        good, text = self.run(f'(t-save i "{path}")')
+        assert good, text
+        return xcf.Image(path)
+
+
+class Dialog:
+    def __init__(self, window, tap):
+        self.window, self.tap, self.root = window, tap, None
+
+    def open(self, frame):
+        start = time.monotonic()
+        self.window.menu(frame, "Filters", "Enhance", "Perspective Fill")
+        self.root = self.window.frame("Perspective Fill", 30)
+        self.tap.case(self.root is not None, "opens from the menu",
+                      f"after {time.monotonic() - start:.1f} s")
+        self.preview = self.window.find(self.root, ("unknown", "drawing area", "panel", "canvas"),
+                                        "Preview")
+        self.status_label = self.window.find(self.root, ("label",), "Status")
+        time.sleep(1)
+
+    def picture(self):
+        shot = cv2.imread(str(self.window.screenshot("now")))
+        x, y, width, height = self.window.extents(self.preview)
+        return shot[y : y + height, x : x + width].astype(int)
+
+    def changes(self, act, name, share=.002):
+        """act makes at least that share of the preview's pixels different."""
+        before = self.picture()
+        start = time.monotonic()
+        act()
+        good = wait_for(lambda: (np.abs(self.picture() - before).max(-1) > 12).mean() > share, 12)
+        self.tap.case(good is not None, name, f"after {time.monotonic() - start:.1f} s")
+
+    def spin(self, label):
+        return self.window.spin(self.root, label)
+
+    def value(self, label):
+        return self.spin(label).queryValue().currentValue
+
+    def set(self, label, value):
+        self.spin(label).queryValue().currentValue = value
+
+    def status(self):
+        return self.status_label.queryText().getText(0, -1)
+
+    def says(self, *words, seconds=20):
+        return wait_for(lambda: any(word in self.status() for word in words), seconds, step=.02)
+
+    def toggle(self, name):
+        self.window.press(self.window.find(self.root, ("radio button",), name))
+
+    def press(self, name):
+        self.window.press(self.window.button(self.root, name))
+
+    def choose(self, *words):
+        """The first item of any combo box that has all words."""
+        item = wait_for(lambda: next((node for node in walk(self.root)
+                                      if node.getRoleName() == "menu item"
+                                      and all(word in node.name for word in words)), None), 10)
+        self.window.press(item)
+
+    def alive(self):
+        return self.window.frame("Perspective Fill", 1) is not None
+
+
+def on_screen(dialog, x, y):
+    """A point of the picture, in the preview on the screen."""
+    left, top, width, height = dialog.window.extents(dialog.preview)
+    zoom = min(width * (1 - 2 * MARGIN) / WIDTH, height * (1 - 2 * MARGIN) / HEIGHT)
+    return (left + (width - zoom * WIDTH) / 2 + zoom * x, top + (height - zoom * HEIGHT) / 2 + zoom * y)
+
+
+def horizon_y(slant):
+    focal = WIDTH / 2 / math.tan(math.radians(FOV / 2))
+    return HEIGHT / 2 - focal / math.tan(math.radians(slant))
+
+
+def check_sliders(dialog):
+    for label, value in (("Slant", 78), ("Tilt", 12), ("Field of view", 70)):
+        dialog.changes(lambda label=label, value=value: dialog.set(label, value),
+                       f"{label} moves the preview")
+    dialog.set("Tilt", 0)
+    dialog.set("Field of view", FOV)
+    dialog.changes(lambda: dialog.toggle("Scale map"), "the scale map is shown")
+    dialog.window.screenshot("scale-map")
+    dialog.changes(lambda: dialog.toggle("Draft result"), "the draft is shown")
+    good = dialog.says("Draft:", seconds=40)
+    dialog.tap.case(good, "the draft comes", dialog.status())
+    dialog.window.screenshot("draft")
+    dialog.changes(lambda: dialog.toggle("Grid"), "the grid comes back")
+
+
+def check_estimate(dialog):
+    dialog.press("Estimate")
+    good = dialog.says("confidence", seconds=30)
+    dialog.tap.case(good, "Estimate answers", dialog.status())
+
+
+def check_drag(dialog):
+    dialog.set("Slant", 80)
+    dialog.set("Tilt", 0)
+    time.sleep(.5)
+    y = horizon_y(80)
+    start, end = on_screen(dialog, WIDTH / 2, y), on_screen(dialog, WIDTH / 2, y + 90)
+    dialog.window.drag(start, end)
+    wanted = math.degrees(math.atan2(1, (HEIGHT / 2 - y - 90) * math.tan(math.radians(FOV / 2))
+                                     / (WIDTH / 2)))
+    good = wait_for(lambda: abs(dialog.value("Slant") - wanted) < 1.5, 5)
+    dialog.tap.case(good, "dragging the horizon sets the slant",
+                    f"{dialog.value('Slant')}, not {wanted}")
+    dialog.window.screenshot("dragged")
+    left, top, width, height = dialog.window.extents(dialog.preview)
+    handle = on_screen(dialog, WIDTH * .22, y + 90)
+    before = dialog.value("Tilt")
+    dialog.window.drag((left + width * .06 + (handle[0] - left) * .9, handle[1]),
+                       (handle[0], handle[1] + 40))
+    dialog.window.drag(on_screen(dialog, WIDTH * .5, HEIGHT * .9),
+                       on_screen(dialog, WIDTH * .56, HEIGHT * .9))
+    dialog.tap.case(abs(dialog.value("Tilt") - before) > .5, "dragging the grid sets the tilt",
+                    f"{before} {dialog.value('Tilt')}")
+
+
+def check_cancel(dialog, host):
+    """A long run, stopped: the dialog and its values stay."""
+    dialog.set("Slant", 80)
+    dialog.set("Tilt", 0)
+    slant = dialog.value("Slant")
+    dialog.choose("Best")
+    dialog.choose("Texture optimization", "baseline")  # the slowest
+    time.sleep(.5)
+    cancel = dialog.window.button(dialog.root, "Cancel")
+    dialog.press("OK")
+    working = wait_for(lambda: not any(word in dialog.status() for word in
+                                       ("confidence", "Drag", "Draft")), 10, step=.05)
+    dialog.window.screenshot("running")
+    start = time.monotonic()
+    dialog.window.press(cancel)
+    stopped = dialog.says("Stopped", seconds=5)
+    took = time.monotonic() - start
+    dialog.tap.case(working and stopped, "Cancel stops the run", dialog.status())
+    dialog.tap.case(dialog.alive() and dialog.value("Slant") == slant,
+                    "and keeps the dialog and its values", f"{took:.2f} s")
+    print(f"# {took * 1000:.0f} ms from Cancel to the answer, as the accessibility tree sees it")
+    dialog.choose("Normal")
+    dialog.choose("Copies within the plane")
+
+
+def undo(window, frame):
+    """Edit > Undo, as GIMP names it."""
+    edit = window.find(frame, ("menu",), "Edit")
+    window.press(edit)  # its items are brought up to date when it opens
+    item = wait_for(lambda: next((node for node in walk(edit) if (node.name or "").startswith(
+        ("Undo", "_Undo"))), None), 10)
+    window.screenshot("undo-menu")
+    name = item.name
+    window.press(item)
+    return name
+
+
+def check_fill_and_undo(dialog, window, frame, server, folder):
+    before = server.save(folder / "before.xcf")
+    dialog.press("OK")
+    gone = wait_for(lambda: not dialog.alive(), 60)
+    dialog.tap.case(gone, "OK fills and closes the dialog", "" if gone else dialog.status())
+    after = server.save(folder / "after.xcf")
+    x, y, width, height = SELECTION
+    old, new = before.layers[0].bytes, after.layers[0].bytes
+    changed = (old != new).any(-1)
+    inside = np.zeros_like(changed)
+    inside[y : y + height, x : x + width] = True
+    dialog.tap.case(changed[inside].mean() > .5 and not changed[~inside].any(),
+                    "the selection changed and nothing else",
+                    f"{changed[inside].mean()} {changed[~inside].sum()}")
+    window.screenshot("filled")
+    name = undo(window, frame)
+    restored = wait_for(lambda: np.array_equal(
+        server.save(folder / "undone.xcf").layers[0].bytes, old), 10)
+    dialog.tap.case(restored, "one undo restores every byte", name)
+
+
+def check_last_values(dialog, window, frame):
+    dialog.open(frame)
+    dialog.tap.case(dialog.value("Slant") == 80, "the last values are back", dialog.value("Slant"))
+    dialog.press("Cancel")
+    dialog.tap.case(wait_for(lambda: not dialog.alive(), 10), "Cancel closes the dialog")
+
+
+def main():
+    name, plugin, picture, artefacts = sys.argv[1:5]
+    tap = Tap()
+    with Host(name, plugin) as host, Window(host, Path(artefacts)) as window:
+        server = Server(host)
+        window.start(Path(picture).resolve(), server.script)
+        frame = window.frame(f"{WIDTH}x{HEIGHT}", 60)
+        tap.case(frame is not None, "GIMP is up")
+        ready, text = server.run(PRELUDE[name] + IMAGE[name] + SELECT.format(*SELECTION))
+        tap.case(ready, "its server answers", text)
+        dialog = Dialog(window, tap)
+        dialog.open(frame)
+        dialog.says("confidence", seconds=30)  # the estimate that opening starts
+        window.screenshot("opened")
+        check_sliders(dialog)
+        check_estimate(dialog)
+        check_drag(dialog)
+        check_cancel(dialog, host)
+        check_fill_and_undo(dialog, window, frame, server, host.folder)
+        check_last_values(dialog, window, frame)
+        log = (Path(artefacts) / f"gimp{name}.log").read_text(errors="replace")
+        tap.case("duplicate mnemonic" not in log.lower(), "no mnemonic twice", log[-2000:])
+    tap.plan()
+
+
+main()
