@@ -86,7 +86,7 @@ class Host:
         return ["gimp-console-3", *common, "--quit",
                 "--batch-interpreter=plug-in-script-fu-eval", "-b", load]
 
-    def run(self, *script, seconds=100, **environment):
+    def run(self, *script, seconds=240, **environment):
         """What GIMP wrote. `done` tells whether the script came to its end."""
         done = subprocess.run(
             ["timeout", "-k", "5", str(seconds), *self.command([*script, '(gimp-message "t-done")'])],

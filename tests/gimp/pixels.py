@@ -112,7 +112,7 @@ def check_table(host, tap, folder):
         picture(folder / f"picture-{alpha:d}.png", alpha)
     script = [script_of(host, case, folder / f"picture-{MODES[case[0]][1]:d}.png", folder / str(n))
               for n, case in enumerate(todo)]
-    output = host.run(*script, seconds=150)
+    output = host.run(*script, seconds=500)
     tap.case(host.done, "the table's script came to its end", output)
     for number, case in enumerate(todo):
         name = f"{case[0]} {case[1]} {case[2]}" + (" offset" if case[3] else "")
