@@ -118,7 +118,8 @@ def on_screen(dialog, x, y):
     """A point of the picture, in the preview on the screen."""
     left, top, width, height = dialog.window.extents(dialog.preview)
     zoom = min(width * (1 - 2 * MARGIN) / WIDTH, height * (1 - 2 * MARGIN) / HEIGHT)
-    return (left + (width - zoom * WIDTH) / 2 + zoom * x, top + (height - zoom * HEIGHT) / 2 + zoom * y)
+    return (left + (width - zoom * WIDTH) / 2 + zoom * x,
+            top + (height - zoom * HEIGHT) / 2 + zoom * y)
 
 
 def horizon_y(slant):
@@ -246,6 +247,9 @@ def main():
         tap.case(frame is not None, "GIMP is up")
         ready, text = server.run(PRELUDE[name] + IMAGE[name] + SELECT.format(*SELECTION))
         tap.case(ready, "its server answers", text)
+        welcome = window.frame("Welcome", 2)  # GIMP 3 greets a new profile
+        if welcome:
+            window.press(window.button(welcome, "Close"))
         dialog = Dialog(window, tap)
         dialog.open(frame)
         dialog.says("confidence", seconds=30)  # the estimate that opening starts

@@ -89,7 +89,8 @@ class Host:
     def run(self, *script, seconds=240, **environment):
         """What GIMP wrote. `done` tells whether the script came to its end."""
         done = subprocess.run(
-            ["timeout", "-k", "5", str(seconds), *self.command([*script, '(gimp-message "t-done")'])],
+            ["timeout", "-k", "5", str(seconds),
+             *self.command([*script, '(gimp-message "t-done")'])],
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
             env=self.environment(**environment), cwd=self.folder, check=False)
         output = done.stdout.decode(errors="replace")

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Fills in a real GIMP, every kind of pixels and selection, checked byte by byte.
 
-pixels.py HOST PLUGIN COMMAND: HOST is 2 or 3; COMMAND the command recede, or "" where it is not built.
+pixels.py HOST PLUGIN COMMAND: HOST is 2 or 3; COMMAND the command recede, or "" where there is
+none.
 """
 import subprocess
 import sys
@@ -28,7 +29,7 @@ OFFSET = (7, -5)
 
 
 def picture(path, alpha, seed=3):
-    """A 16-bit picture: bricks with noise; alpha: the top left corner transparent, a fading edge."""
+    """A 16-bit picture: bricks with noise; alpha: fading into a transparent corner."""
     random = np.random.default_rng(seed)
     y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
     joint = (y % 8 < 1) | ((x + 8 * (y // 8 % 2)) % 16 < 1)
@@ -84,7 +85,8 @@ def faults(before, after, mask):
     full = 65535 if after.values.max() > 255 else 255 if after.values.max() > 1.5 else 1
     known = before.values[outside][..., :colours].reshape(-1, colours)
     filled = after.values[inside][..., :colours].reshape(-1, colours)
-    if len(filled) and np.abs(filled.mean(0) - known.mean(0)).max() > .25 * max(known.max(), full / 9):
+    allowed = .25 * max(known.max(), full / 9)
+    if len(filled) and np.abs(filled.mean(0) - known.mean(0)).max() > allowed:
         yield f"mean {filled.mean(0)}, around it {known.mean(0)}"
     if before.values.shape[2] in (2, 4):
         opaque = after.values[inside][..., -1]
@@ -185,12 +187,43 @@ def check_same_as_command(host, tap, folder, command):
                  theirs is None else f"{(theirs != ours).any(-1).sum()} pixels differ")
 
 
+def check_synthesis(host, tap, folder):
+    """A new image: the size asked for, the image's precision, the exemplar's colours."""
+    for mode, precision, selected in (("rgb", "u8", False), ("graya", "u16", True),
+                                      ("rgb", "float-linear", False)):
+        stem = folder / f"made-{mode}-{precision}"
+        name = f"synthesize {mode} {precision}" + (" of a selection" if selected else "")
+        lines = [f'(define i (t-load "{folder}/picture-{MODES[mode][1]:d}.png"))',
+                 "(define d (t-layer i))"]
+        if MODES[mode][0]:
+            lines.append("(gimp-image-convert-grayscale i)")
+        if precision != "u16":
+            lines.append(f"(gimp-image-convert-precision i {host.precision(precision)})")
+        if selected:
+            lines.append("(gimp-image-select-rectangle i CHANNEL-OP-REPLACE 40 8 50 50)")
+        made = host.synthesize(width=120, height=90, orientation="angles", slant=30)
+        output = host.run(*lines, f'(t-save i "{stem}-old.xcf")', f"(define n (car {made}))",
+                          f'(t-save n "{stem}.xcf")')
+        if not host.done:
+            tap.case(False, name, output)
+            continue
+        old, new = xcf.Image(f"{stem}-old.xcf"), xcf.Image(f"{stem}.xcf")
+        colours = slice(0, 1 if MODES[mode][0] else 3)
+        values = new.layers[0].values[..., colours]
+        opaque = old.layers[0].values[10:50, 50:85, colours]
+        tap.case((new.width, new.height, new.precision) == (120, 90, old.precision)
+                 and np.abs(values.mean() / opaque.mean() - 1) < .2
+                 and .5 < values.std() / opaque.std() < 1.5, name,
+                 f"{new.width}x{new.height}, mean {values.mean()} for {opaque.mean()}")
+
+
 def main():
     name, plugin, command = sys.argv[1:4]
     tap = Tap()
     with Host(name, plugin) as host:
         check_table(host, tap, host.folder)
         check_new_layer(host, tap, host.folder)
+        check_synthesis(host, tap, host.folder)
         check_same_as_command(host, tap, host.folder, command and Path(command).resolve())
     tap.plan()
 

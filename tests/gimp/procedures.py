@@ -87,7 +87,8 @@ def check_arguments(host, tap, table):
             want = (TYPES[host.name][table[key][0]], *table[key][1:])
             tap.case(theirs.get(key) == want, f"{procedure}: {key}", f"{theirs.get(key)}\n{want}")
     core_keys = [key for key in FILL if key not in ("source", "result")]
-    tap.case([key for key in table if key not in OWN] == core_keys, "the table's order", list(table))
+    tap.case([key for key in table if key not in OWN] == core_keys, "the table's order",
+             list(table))
 
 
 def new_group(host):
@@ -100,14 +101,16 @@ def errors(host):
     frontal = {"orientation": "frontal"}
     yield "no selection", host.fill(**frontal), "Nothing is selected"
     yield ("a selection outside the layer",
-           select + "(gimp-layer-set-offsets d 200 200)" + host.fill(**frontal), "outside the layer")
+           select + "(gimp-layer-set-offsets d 200 200)" + host.fill(**frontal),
+           "outside the layer")
     yield ("everything selected", "(gimp-selection-all i)" + host.fill(**frontal),
            "Nothing is left to copy from")
-    yield ("a group", f"(define g (car {new_group(host)}))(gimp-image-insert-layer i g 0 0)" + select
-           + host.fill(layer="g", **frontal), "layer group")
+    yield ("a group", f"(define g (car {new_group(host)}))(gimp-image-insert-layer i g 0 0)"
+           + select + host.fill(layer="g", **frontal), "layer group")
     yield ("indexed", select + "(gimp-image-convert-indexed i CONVERT-DITHER-NONE"
            ' CONVERT-PALETTE-GENERATE 16 FALSE FALSE "")' + host.fill(**frontal), "indexed")
-    yield ("locked", "(gimp-item-set-lock-content d TRUE)" + select + host.fill(**frontal), "locked")
+    yield ("locked", "(gimp-item-set-lock-content d TRUE)" + select + host.fill(**frontal),
+           "locked")
     yield ("floating", select + ("(gimp-edit-copy d)(define f (car (gimp-edit-paste d TRUE)))"
                                  if host.name == "2" else
                                  "(gimp-edit-copy (vector d))"
@@ -115,11 +118,14 @@ def errors(host):
            + host.fill(layer="f", **frontal), "floating selection")
     yield ("beyond the horizon", select + host.fill(orientation="angles", slant=130),
            "beyond the horizon")
-    yield ("slant out of range", select + host.fill(orientation="angles", slant=190), "slant.*190|190.*slant|out of range")
-    yield "a source that is none", select + host.fill(source=4711, **frontal), "source|invalid|argument"
+    yield ("slant out of range", select + host.fill(orientation="angles", slant=190),
+           "slant.*190|190.*slant|out of range")
+    yield ("a source that is none", select + host.fill(source=4711, **frontal),
+           "source|invalid|argument")
     if host.name == "3":
         yield ("two layers", select + "(define e (car (gimp-layer-copy d)))"
-               "(gimp-image-insert-layer i e 0 0)" + host.fill(layer="d e", **frontal), "exactly one")
+               "(gimp-image-insert-layer i e 0 0)" + host.fill(layer="d e", **frontal),
+               "exactly one")
     if host.name == "2":
         yield ("too few arguments", select + "(plug-in-recede-fill RUN-NONINTERACTIVE i d 0)",
                "[Aa]rguments")
@@ -130,7 +136,12 @@ def check_errors(host, tap):
     path = host.folder / "noise.png"
     cv2.imwrite(str(path), random.integers(0, 256, (64, 64, 3), np.uint8))
     for name, script, words in errors(host):
+<<<<<<< HEAD
         output = host.run(f'(define i (t-load "{path}"))', "(define d (t-layer i))", script, seconds=200)
+=======
+        output = host.run(f'(define i (t-load "{path}"))', "(define d (t-layer i))", script,
+                          seconds=60)
+>>>>>>> cad9ad6 (Test the new images, and keep the tests within 100 columns)
         tap.case(not host.done and re.search(words, output), f"says: {name}", output)
 
 

@@ -9,6 +9,7 @@ for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep .1; done
 DISPLAY=:$(cat "$work/display")
 export DISPLAY XDG_RUNTIME_DIR=$work GSETTINGS_BACKEND=memory
 chmod 700 "$work"
+# shellcheck disable=SC2016 # expanded inside
 dbus-run-session -- bash -c 'openbox >/dev/null 2>&1 & manager=$!; "$@"; status=$?; kill $manager; exit $status' \
   windowed "$@" 2>"$work/stderr"
 status=$?

@@ -69,7 +69,9 @@ class Drawable:
         kind = reader.take("I") if file.reading_layers else 2
         self.name = reader.string()
         properties = reader.properties()
-        self.offsets = struct.unpack(">ii", properties[PROP_OFFSETS]) if file.reading_layers else (0, 0)
+        self.offsets = (0, 0)
+        if file.reading_layers:
+            self.offsets = struct.unpack(">ii", properties[PROP_OFFSETS])
         hierarchy = reader.take(file.pointer)
         self.bytes = self.read_hierarchy(file, hierarchy)
         number = np.dtype(NUMBERS[file.precision // 100])
