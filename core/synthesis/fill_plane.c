@@ -21,8 +21,8 @@
 #define COARSEST_HOLE_PX 18
 /* Each px deeper in the hole counts 1.3 times less; 1.15 is too trusting. */
 #define CONFIDENCE_FALLOFF 1.3f
-#define COHERENCE .01f
-#define COHERENCE_OF_COMPOSITION .02f
+#define COHERENCE .03f
+#define COHERENCE_OF_COMPOSITION .06f
 #define PERIOD_TRIES 3
 /* The surface is judged on a picture of about this width. */
 #define SURFACE_LONGEST_PX 800
