@@ -136,12 +136,7 @@ def check_errors(host, tap):
     path = host.folder / "noise.png"
     cv2.imwrite(str(path), random.integers(0, 256, (64, 64, 3), np.uint8))
     for name, script, words in errors(host):
-<<<<<<< HEAD
         output = host.run(f'(define i (t-load "{path}"))', "(define d (t-layer i))", script, seconds=200)
-=======
-        output = host.run(f'(define i (t-load "{path}"))', "(define d (t-layer i))", script,
-                          seconds=60)
->>>>>>> cad9ad6 (Test the new images, and keep the tests within 100 columns)
         tap.case(not host.done and re.search(words, output), f"says: {name}", output)
 
 
