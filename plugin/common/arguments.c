@@ -31,7 +31,7 @@ static const rp_argument source_row = {
     NULL};
 static const rp_argument result_row = {
     "result",
-    N_("_Put into"),
+    N_("_Goes into"),
     N_("Whether the fill goes into the layer or into a new one above it"),
     "",
     RP_CHOICE,

@@ -50,6 +50,14 @@ static const struct {
 } stages[] = {
     {"prepare", N_("Preparing")},
     {"orientation", N_("Reading the orientation")},
+    {"tone", N_("Evening out the light")},
+    {"pyramid", N_("Making smaller copies")},
+    {"scale map", N_("Measuring the scale")},
+    {"start", N_("Making a first guess")},
+    {"search", N_("Searching for texture")},
+    {"composition", N_("Putting pieces together")},
+    {"join", N_("Hiding the seams")},
+    {"detail", N_("Matching the detail")},
     {"write", N_("Writing")},
 };
 
