@@ -136,7 +136,8 @@ def check_errors(host, tap):
     path = host.folder / "noise.png"
     cv2.imwrite(str(path), random.integers(0, 256, (64, 64, 3), np.uint8))
     for name, script, words in errors(host):
-        output = host.run(f'(define i (t-load "{path}"))', "(define d (t-layer i))", script, seconds=200)
+        output = host.run(f'(define i (t-load "{path}"))', "(define d (t-layer i))", script,
+                          seconds=200)
         tap.case(not host.done and re.search(words, output), f"says: {name}", output)
 
 
