@@ -85,6 +85,20 @@ def summary(cases, scores, methods):
     return table(header, rows)
 
 
+def surface_choice(scores):
+    """A sentence on what --surface auto made of its choice; empty where that was not measured."""
+    lost = []
+    for found in scores.values():
+        if {'plane', 'plane-flat', 'plane-raised'} <= found.keys():
+            best = max(found['plane-flat']['score'], found['plane-raised']['score'])
+            lost.append(best - found['plane']['score'])
+    if not lost:
+        return ''
+    right = sum(loss < .1 for loss in lost)
+    return (f'--surface auto: the better of flat and raised in {right} of {len(lost)}, '
+            f'{max(lost):.1f} points lost at most, {mean(lost):.1f} on the average\n')
+
+
 def per_case(cases, scores, methods):
     """Scores of every method, and the terms of the first that cost it most."""
     rows = []

@@ -104,6 +104,7 @@ def main():
     scores = score_all(cases, chosen.methods, chosen.binary, extra, chosen.out, chosen.jobs)
     print(report.per_case(cases, scores, chosen.methods))
     print(report.summary(cases, scores, chosen.methods))
+    print(report.surface_choice(scores), end='')
     (chosen.out / 'scores.json').write_text(json.dumps(
         {'settings': extra, 'summary': report.figures(cases, scores, chosen.methods),
          'cases': scores}, indent=1))
