@@ -4,6 +4,8 @@
 
 #include "metadata_parts.h"
 
+#define LONGEST_FILE 0x7fffffffu /* GByteArray counts in 32 bits */
+
 GByteArray *metadata_copy(const uint8_t *bytes, size_t size) {
   GByteArray *copy = g_byte_array_new();
   g_byte_array_append(copy, bytes, (guint)size);
@@ -71,6 +73,10 @@ image_status metadata_carry(const image_file *from, const image_format *format, 
   bool lost = false;
   GByteArray *made = NULL;
   bool png = strcmp(format->codec, "png") == 0;
+  if (bytes->size > LONGEST_FILE) {
+    g_snprintf(message->text, sizeof message->text, "The file is too long for metadata.");
+    return IMAGE_OK;
+  }
   metadata_parts parts = parts_of(from, keep);
   if (!keep) drop_description(&parts);
   if (png) made = metadata_into_png(bytes->data, bytes->size, &parts, &lost);

@@ -240,8 +240,8 @@ static const struct {
          "smaller towards the horizon, as what surrounds it does. Pixels outside stay as they are.",
          "Example:\n"
          "  recede fill street.jpg --mask van.png -o street-empty.png --slant 70\n\n"
-         "The orientation is given by --slant and --tilt, by --horizon, by --quad or by --frontal;\n"
-         "without any it is estimated from the picture.\n\n"
+         "The orientation is given by --slant and --tilt, by --horizon, by --quad or by\n"
+         "--frontal; without any it is estimated from the picture.\n\n"
          "Pictures are taken as they are seen: turned by their Exif orientation. The mask may\n"
          "have the size seen or the size stored.\n"
          "Exit codes: 0 done, 1 failed, 2 usage, 3 input, 4 output, 5 memory or size,\n"

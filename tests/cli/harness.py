@@ -23,6 +23,10 @@ TEXTURE = Path(__file__).parents[1] / "data" / "brick_regular.png"
 TIME_LIMIT_S = 60
 
 
+# Under sanitizers the same code is run, less often: each run takes several times as long.
+SANITIZED = "ASAN_OPTIONS" in os.environ
+
+
 class Failure(Exception):
     pass
 

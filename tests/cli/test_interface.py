@@ -37,7 +37,8 @@ def test_usage_errors_are_2(folder):
     image, mask = pair(folder)
     good = [image, "--mask", mask, "-o", folder / "out.png"]
     wrong = [
-        ["--no-such"], ["--slant", "180"], ["--slant", "-1"], ["--slant", "nan"], ["--slant", "inf"],
+        ["--no-such"], ["--slant", "180"], ["--slant", "-1"], ["--slant", "nan"],
+        ["--slant", "inf"],
         ["--slant", "4x"], ["--slant", ""], ["--slant", "4,5"], ["--slant", "30", "--tilt", "181"],
         ["--tilt", "20"], ["--fov", "0.5"], ["--fov", "171"], ["--horizon", "1,2,3"],
         ["--horizon", "1,2,1,2"], ["--horizon", "1,2,3,4,5"], ["--quad", "1,2,3,4,5,6,7,8,9"],
@@ -144,7 +145,8 @@ def test_seed_holds_the_hash(folder):
 
     def hash_of(seed, number):
         out = folder / f"{seed}-{number}.png"
-        report = report_of("fill", image, "--mask", mask, "-o", out, "--slant", "40", "--seed", seed)
+        report = report_of("fill", image, "--mask", mask, "-o", out, "--slant", "40", "--seed",
+                           seed)
         return report["output_hash"], out.read_bytes()
 
     check(hash_of(1, 1) == hash_of(1, 2), "the same seed gave two results")
@@ -189,8 +191,8 @@ def test_two_runs_write_the_same_bytes(folder):
 
 
 def test_names_of_files(folder):
-    names = ["-x.png", "--slant", "with space.png", "new\nline.png", "ünï©ode 日本.png", "a;b|c&d.png",
-             "$(touch hit).png", "*.png", "n" * 251 + ".png", "%s%n.png", "-"]
+    names = ["-x.png", "--slant", "with space.png", "new\nline.png", "ünï©ode 日本.png",
+             "a;b|c&d.png", "$(touch hit).png", "*.png", "n" * 251 + ".png", "%s%n.png", "-"]
     for number, name in enumerate(names):
         image = write(folder / "plain.png", texture())
         mask = write(folder / "mask.png", hole())

@@ -1,4 +1,4 @@
-"""Profile, Exif, XMP, IPTC, turn, resolution and depth go with the picture; nothing of ours does."""
+"""Profile, Exif, XMP, IPTC, turn, resolution and depth go with the picture; nothing of ours."""
 import json
 import subprocess
 import sys

@@ -139,8 +139,8 @@ def write_tiff(path, rgba, extra_samples):
             (262, 3, 1, 2), (273, 4, 1, 24), (277, 3, 1, 4), (278, 3, 1, height),
             (279, 4, 1, len(data)), (284, 3, 1, 1), (338, 3, 1, extra_samples), (339, 3, 4, 16)]
     folder = struct.pack("<H", len(tags)) + b"".join(struct.pack("<HHII", *tag) for tag in tags)
-    path.write_bytes(b"II*\0" + struct.pack("<I", 24 + len(data)) + struct.pack("<8H", 32, 32, 32, 32,
-                     3, 3, 3, 3) + data + folder + bytes(4))
+    head = b"II*\0" + struct.pack("<I8H", 24 + len(data), 32, 32, 32, 32, 3, 3, 3, 3)
+    path.write_bytes(head + data + folder + bytes(4))
     return path
 
 

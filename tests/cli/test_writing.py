@@ -134,14 +134,14 @@ def fill_up(folder, disk, suffix, kind):
     arguments = noisy_job(folder, suffix, kind)
     size = len(expected(folder, arguments, suffix))
     failed = 0
-    for number in range(13):
+    for number in range(0, 13, 6 if harness.SANITIZED else 1):
         for path in disk.iterdir():
             path.unlink()
         (disk / f"old.{suffix}").write_bytes(OLD)
         free = os.statvfs(disk).f_bavail * os.statvfs(disk).f_frsize
         (disk / "ballast").write_bytes(bytes(max(0, free - size * number // 12 // 4096 * 4096)))
         failed += check_failed_write(folder, arguments, suffix, disk)
-    check(failed >= 12, suffix, "only", failed, "of 13 disks were full")
+    check(failed >= (2 if harness.SANITIZED else 12), suffix, "only", failed, "disks were full")
 
 
 def test_kill_at_any_moment(folder):
@@ -154,7 +154,7 @@ def test_kill_at_any_moment(folder):
         whole = expected(folder, arguments, suffix)
         usual = time.monotonic() - began
         out = folder / f"out.{suffix}"
-        for number in range(25):
+        for number in range(4 if harness.SANITIZED else 25):
             out.unlink(missing_ok=True)
             if number % 2:
                 out.write_bytes(OLD)
