@@ -11,11 +11,16 @@ static rc_grid grid_of(int picture_width, int picture_height, int width) {
   return grid;
 }
 
-static bool holds_target(const rc_mask *flags, int x0, int y0, int width) {
+static void look_at(const rc_mask *flags, int x0, int y0, int width, uint8_t *active,
+                    float *known) {
+  int targets = 0, knowns = 0;
   for (int y = y0; y < y0 + width; y++)
-    for (int x = x0; x < x0 + width; x++)
-      if (*rc_flag(flags, x, y) & RC_TARGET) return true;
-  return false;
+    for (int x = x0; x < x0 + width; x++) {
+      targets += *rc_flag(flags, x, y) & RC_TARGET ? 1 : 0;
+      knowns += *rc_flag(flags, x, y) & RC_KNOWN ? 1 : 0;
+    }
+  *active = targets > 0;
+  *known = (float)knowns / (float)(width * width);
 }
 
 recede_status rc_matches_new(rc_context *context, const rc_mask *flags, int width,
@@ -27,11 +32,12 @@ recede_status rc_matches_new(rc_context *context, const rc_mask *flags, int widt
   RC_TRY(RC_NEW(context, count, &matches->corner));
   RC_TRY(RC_NEW_ZERO(context, count, &matches->distance));
   RC_TRY(RC_NEW_ZERO(context, count, &matches->weight));
+  RC_TRY(RC_NEW(context, count, &matches->known));
   for (int row = 0; row < grid.rows; row++) {
     for (int column = 0; column < grid.columns; column++) {
       size_t i = (size_t)row * (size_t)grid.columns + (size_t)column;
-      matches->active[i] =
-          holds_target(flags, rc_grid_x(&grid, column), rc_grid_y(&grid, row), width);
+      look_at(flags, rc_grid_x(&grid, column), rc_grid_y(&grid, row), width, &matches->active[i],
+              &matches->known[i]);
       matches->corner[i] = (rc_corner){-1, -1};
       matches->count += matches->active[i];
     }

@@ -15,6 +15,7 @@ typedef struct rc_matches {
   rc_corner *corner; /* z_p; none: x < 0 */
   float *distance;   /* ||x_p - z_p||^2 */
   float *weight;     /* W_p, eq. 7; 0 where there is no match */
+  float *known;      /* part of the neighbourhood's pixels that are KNOWN: 0..1 */
   int count;         /* active ones */
 } rc_matches;
 

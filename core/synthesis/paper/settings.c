@@ -14,7 +14,8 @@ static const rc_paper_settings literal = {
     .iterations = 8,
 };
 
-/* What it takes to look like the exemplar (measured; see the README of the benchmarks). */
+/* What it takes to look like the exemplar. Measured on fills of 130 px (six cases, mean score):
+ * what reaches over the border voting 31 times instead of once is worth 59 -> 75. */
 static const rc_paper_settings repaired = {
     .levels = 4,
     .widths = {16, 8},
@@ -24,6 +25,7 @@ static const rc_paper_settings repaired = {
     .scale_apart = true,
     .coherence = true,
     .vote_first = true,
+    .border_trust = 30,
     .tree_leaf = RC_TREE_BRANCHES,
     .exponent = .8,
     .histogram_gain = 10,

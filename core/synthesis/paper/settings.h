@@ -22,6 +22,7 @@ typedef struct rc_paper_settings {
   bool scale_channel;    /* S is a channel of the neighbourhood: RGBS */
   bool scale_apart;      /* log2 S is one number beside the components */
   bool coherence;        /* try the neighbours' matches, shifted */
+  double border_trust;   /* a neighbourhood of known pixels only would vote 1 + this times */
   bool vote_first;       /* vote from the coarser level's matches before searching */
   double tree_stop;      /* a node of fewer than this part of all neighbourhoods is a leaf ... */
   int tree_leaf;         /* ... or of fewer than this many */

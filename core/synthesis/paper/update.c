@@ -17,6 +17,7 @@ double rc_energy_weights(const rc_paper_settings *settings, float least_distance
     float log_square = rc_log2(square > least_distance ? square : least_distance);
     matches->weight[i] = rc_exp2((half - 1) * log_square); /* eq. 7: ||x_p - z_p||^(r - 2) */
     energy += (double)(matches->weight[i] * square);       /* eq. 8 */
+    matches->weight[i] *= 1 + (float)settings->border_trust * matches->known[i];
   }
   return energy;
 }
