@@ -213,6 +213,16 @@ command_exit command_write(const options *given, const recede_view *result, cons
   return code;
 }
 
+void command_doubt(const options *given, const recede_orientation *orientation) {
+  char text[200];
+  if (!orientation->estimated || orientation->confidence >= RECEDE_CONFIDENCE_LOW) return;
+  snprintf(text, sizeof text,
+           "the orientation was read from the picture with little confidence (%.2f): do not trust "
+           "it; give --slant and --tilt, or --horizon",
+           orientation->confidence);
+  command_warn(given, NULL, text);
+}
+
 command_exit command_report(const options *given, const recede_report *report,
                             const report_scale *scale) {
   char message[300];

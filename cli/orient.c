@@ -39,7 +39,9 @@ static command_exit run(orient *this) {
   command_exit code = command_finish(this->job, status, this->given);
   if (number) return (command_exit)(128 + number);
   this->report = *recede_job_report(this->job);
-  if (status == RECEDE_OK) this->report.orientation = orientation;
+  if (status != RECEDE_OK) return code;
+  this->report.orientation = orientation;
+  command_doubt(this->given, &orientation);
   return code;
 }
 
@@ -51,8 +53,7 @@ static void say(const orient *this) {
   if (isfinite(found->horizon[0]))
     printf("horizon %.0f,%.0f,%.0f,%.0f\n", found->horizon[0], found->horizon[1], found->horizon[2],
            found->horizon[3]);
-  printf("confidence %.2f%s\n", found->confidence,
-         found->confidence < RECEDE_CONFIDENCE_LOW ? ": do not trust it" : "");
+  printf("confidence %.2f\n", found->confidence);
 }
 
 command_exit command_orient(options *given) {

@@ -64,7 +64,9 @@ static command_exit find_plane(scale_map *this) {
   command_exit code = command_finish(this->job, status, this->given);
   if (number) return (command_exit)(128 + number);
   this->report = *recede_job_report(this->job);
-  if (status == RECEDE_OK) this->report.orientation = orientation;
+  if (status != RECEDE_OK) return code;
+  this->report.orientation = orientation;
+  command_doubt(this->given, &orientation);
   return code;
 }
 
