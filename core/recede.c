@@ -8,12 +8,9 @@
 #include "base/context.h"
 #include "base/memory.h"
 #include "image/view.h"
-#include "plane/estimate.h"
+#include "orientation.h"
 #include "synthesis/problem_build.h"
-
-/* Orientation is read from a copy of the picture no longer than this: the estimate's accuracy does
- * not gain from more, its time does. */
-#define ESTIMATE_LONGEST_PX 1000
+#include "synthesis/result.h"
 
 struct recede_job {
   rc_context context;
@@ -123,104 +120,19 @@ static rc_views views_of(const recede_job *job) {
 
 /* ----------------------------------------------------------------------------- orientation -- */
 
-/* on (may be NULL): a point of the picture that lies on the plane. */
-static recede_status estimate_orientation(recede_job *job, double fov_deg, const double on[2],
-                                          recede_plane *plane, double *confidence) {
-  rc_context *context = &job->context;
-  int longest = job->image.width > job->image.height ? job->image.width : job->image.height;
-  int factor = (longest + ESTIMATE_LONGEST_PX - 1) / ESTIMATE_LONGEST_PX;
-  rc_views views = views_of(job);
-  rc_image image;
-  rc_mask flags;
-  double small_on[2];
-  for (int i = 0; i < 2 && on; i++) small_on[i] = (on[i] + .5) / factor - .5;
-  rc_block *mark = rc_mark(context);
-  RC_TRY(rc_stage(context, "orientation", 0, .03));
-  RC_TRY(rc_shrink(context, &views, factor, &image, &flags));
-  RC_TRY(
-      rc_estimate_plane(context, &image, &flags, fov_deg, on ? small_on : NULL, plane, confidence));
-  rc_release(context, mark);
-  plane->focal_px *= (double)longest / (image.width > image.height ? image.width : image.height);
-  plane->width = job->image.width;
-  plane->height = job->image.height;
-  return RECEDE_OK;
-}
-
-static recede_status degenerate(recede_job *job, recede_status status, const char *what) {
-  return status == RECEDE_OK
-             ? RECEDE_OK
-             : rc_fail(&job->context, status,
-                       "The %s does not give a plane: its points must be distinct, in order around "
-                       "it, and apart from what is filled.",
-                       what);
-}
-
-/* (on_x, on_y) lies on the plane; size is that of the plane's image. */
-static recede_status resolve_plane(recede_job *job, int width, int height, double on_x, double on_y,
-                                   recede_orientation *orientation) {
-  const recede_params *p = &job->params;
-  recede_plane *plane = &orientation->plane;
-  orientation->confidence = 1;
-  switch (p->orientation) {
-    case RECEDE_ORIENTATION_ANGLES:
-      return recede_plane_from_angles(width, height, p->slant_deg, p->tilt_deg, p->fov_deg, plane);
-    case RECEDE_ORIENTATION_FRONTAL:
-      return recede_plane_from_angles(width, height, 0, 0, p->fov_deg, plane);
-    case RECEDE_ORIENTATION_HORIZON:
-      return degenerate(job,
-                        recede_plane_from_horizon(width, height, p->fov_deg, p->horizon[0],
-                                                  p->horizon[1], p->horizon[2], p->horizon[3], on_x,
-                                                  on_y, plane),
-                        "horizon");
-    case RECEDE_ORIENTATION_QUAD:
-      return degenerate(job, recede_plane_from_quad(width, height, p->fov_deg, p->quad, 1, plane),
-                        "quad");
-    default: break;
-  }
-  orientation->estimated = 1;
-  const double on[2] = {on_x, on_y};
-  return estimate_orientation(job, p->fov_deg, job->mask.data ? on : NULL, plane,
-                              &orientation->confidence);
-}
-
-static void describe(recede_orientation *orientation) {
-  recede_plane_angles(&orientation->plane, &orientation->slant_deg, &orientation->tilt_deg,
-                      &orientation->fov_deg);
-  if (!recede_plane_horizon(&orientation->plane, orientation->horizon))
-    for (int i = 0; i < 4; i++) orientation->horizon[i] = NAN;
-}
-
-/* Without a trusted estimate there is one honest fill left: the frontal one, and that is said. */
-static recede_status fall_back(recede_job *job, recede_status status,
-                               recede_orientation *orientation) {
-  if (!orientation->estimated) return status;
-  if (status != RECEDE_OK && status != RECEDE_NO_PLANE) return status;
-  if (status == RECEDE_OK && orientation->confidence >= RECEDE_CONFIDENCE_LOW) return RECEDE_OK;
-  rc_warn(
-      &job->context,
-      "The orientation could not be read from the picture with confidence (%.2f); it was filled "
-      "without perspective. Give slant and tilt, or a horizon.",
-      status == RECEDE_OK ? orientation->confidence : 0.);
-  if (status != RECEDE_OK) orientation->confidence = 0;
-  return recede_plane_from_angles(job->image.width, job->image.height, 0, 0, job->params.fov_deg,
-                                  &orientation->plane);
-}
-
 static recede_status orient(recede_job *job, recede_orientation *orientation) {
-  double x = (job->image.width - 1) / 2., y = (job->image.height - 1) / 2.;
+  /* A horizon alone: the plane is what lies at the bottom. */
+  double on[2] = {(job->image.width - 1) / 2., job->image.height - 1};
+  rc_views views = views_of(job);
   rc_target_summary summary;
-  memset(orientation, 0, sizeof *orientation);
   RC_TRY(check_same_size(job, &job->mask, "mask"));
   RC_TRY(check_same_size(job, &job->source, "source mask"));
   if (job->mask.data) {
     RC_TRY(rc_summarize_target(&job->context, &job->mask, &summary));
-    x = summary.x, y = summary.y;
-  } else {
-    y = job->image.height - 1; /* a horizon alone: the plane is what lies at the bottom */
+    on[0] = summary.x, on[1] = summary.y;
   }
-  RC_TRY(resolve_plane(job, job->image.width, job->image.height, x, y, orientation));
-  describe(orientation);
-  return RECEDE_OK;
+  return rc_resolve_orientation(&job->context, &job->params, &views, job->image.width,
+                                job->image.height, on, orientation);
 }
 
 recede_status recede_job_orient(recede_job *job, recede_orientation *orientation) {
@@ -286,43 +198,6 @@ static recede_status check_result(recede_job *job, const recede_view *result, bo
   return RECEDE_OK;
 }
 
-static void copy_pixels(const recede_view *from, const recede_view *to) {
-  if (from->data == to->data) return;
-  for (int y = 0; y < from->height; y++)
-    memcpy(rc_view_pixel(to, 0, y), rc_view_pixel(from, 0, y),
-           (size_t)from->width * (size_t)from->channels * rc_type_bytes(from->type));
-}
-
-/* One pixel of the result: the fill laid over what was there, by the mask's value. */
-static void blend_pixel(const recede_view *result, int x, int y, const float *fill, float amount) {
-  float pixel[4];
-  int channels = result->channels, colours = channels < 3 ? 1 : 3;
-  bool alpha = colours < channels;
-  rc_view_read(result, x, y, 1, pixel);
-  float old_alpha = alpha && isfinite(pixel[colours]) ? fminf(fmaxf(pixel[colours], 0), 1) : 1.f;
-  float new_alpha = amount + old_alpha * (1 - amount);
-  for (int k = 0; k < colours; k++) {
-    float old = isfinite(pixel[k]) && old_alpha > 0 ? pixel[k] : fill[k];
-    pixel[k] =
-        amount >= 1 ? fill[k] : (fill[k] * amount + old * old_alpha * (1 - amount)) / new_alpha;
-  }
-  if (alpha) pixel[colours] = new_alpha;
-  rc_view_write(result, x, y, 1, pixel);
-}
-
-static void write_fill(const recede_job *job, const rc_problem *problem, const rc_image *filled,
-                       const recede_view *result) {
-  copy_pixels(&job->image, result);
-  for (int y = problem->target.y0; y < problem->target.y1; y++)
-    for (int x = problem->target.x0; x < problem->target.x1; x++) {
-      float amount;
-      if (!(*rc_flag(&problem->flags, x, y) & RC_TARGET)) continue;
-      rc_view_read(&job->mask, problem->origin_x + x, problem->origin_y + y, 1, &amount);
-      blend_pixel(result, problem->origin_x + x, problem->origin_y + y, rc_pixel(filled, x, y),
-                  fminf(amount, 1));
-    }
-}
-
 /* Method plane works in the problem's own pixels: a copy of 12 MP is 144 MB. */
 static recede_status run_method(recede_job *job, const rc_problem *problem, rc_image *filled) {
   rc_context *context = &job->context;
@@ -345,17 +220,15 @@ static recede_status fill(recede_job *job, const recede_view *result) {
   RC_TRY(rc_stage(context, "prepare", 0, .01));
   RC_TRY(check_result(job, result, true));
   RC_TRY(plan_fill(job, &summary));
-  RC_TRY(fall_back(
-      job,
-      resolve_plane(job, job->image.width, job->image.height, summary.x, summary.y, orientation),
-      orientation));
-  describe(orientation);
-  RC_TRY(rc_stage(context, "prepare", .03, .05));
   rc_views views = views_of(job);
+  const double on[2] = {summary.x, summary.y};
+  RC_TRY(rc_trusted_orientation(context, &job->params, &views, job->image.width, job->image.height,
+                                on, orientation));
+  RC_TRY(rc_stage(context, "prepare", .03, .05));
   RC_TRY(rc_problem_of_fill(context, &views, &orientation->plane, &summary, &problem));
   RC_TRY(run_method(job, &problem, &filled));
   RC_TRY(rc_stage(context, "write", .97, 1));
-  write_fill(job, &problem, &filled, result);
+  rc_write_fill(&views, &problem, &filled, result);
   context->report.output_hash = rc_view_hash(result);
   return RECEDE_OK;
 }
@@ -388,47 +261,27 @@ recede_status recede_job_estimate_synthesize(recede_job *job, int width, int hei
   return end(job, status);
 }
 
-/* Pixels with no flag are beyond the horizon: transparent or black. */
-static void write_synthesis(const rc_image *made, const rc_mask *flags, const recede_view *result) {
-  for (int y = 0; y < result->height; y++)
-    for (int x = 0; x < result->width; x++) {
-      float pixel[4] = {0, 0, 0, 0};
-      int colours = made->channels;
-      bool there = !flags || *rc_flag(flags, x, y);
-      if (there) memcpy(pixel, rc_pixel(made, x, y), (size_t)colours * sizeof *pixel);
-      pixel[colours] = there ? 1 : 0;
-      rc_view_write(result, x, y, 1, pixel);
-    }
-}
-
-/* The exemplar's own pixels, bit for bit. */
-static void write_exemplar(const recede_view *exemplar, const rc_problem *problem,
-                           const recede_view *result) {
-  size_t bytes = (size_t)result->channels * rc_type_bytes(result->type);
-  for (int y = 0; y < result->height; y++)
-    for (int x = 0; x < result->width; x++)
-      if (*rc_flag(&problem->flags, x, y) & RC_KNOWN)
-        memcpy(rc_view_pixel(result, x, y),
-               rc_view_pixel(exemplar, x + problem->exemplar_x, y + problem->exemplar_y), bytes);
+static rc_views exemplar_of(const recede_job *job) {
+  return (rc_views){&job->image, NULL, job->source.data ? &job->source : NULL};
 }
 
 static recede_status synthesize_in_plane(recede_job *job, const recede_plane *plane,
                                          const recede_view *result) {
-  rc_views views = {&job->image, NULL, job->source.data ? &job->source : NULL};
+  rc_views views = exemplar_of(job);
   rc_problem problem;
   rc_image filled;
   RC_TRY(rc_problem_of_synthesis(&job->context, &views, plane, &problem));
   RC_TRY(run_method(job, &problem, &filled));
   RC_TRY(rc_stage(&job->context, "write", .97, 1));
-  write_synthesis(&filled, &problem.flags, result);
-  write_exemplar(&job->image, &problem, result);
+  rc_write_synthesis(&filled, &problem.flags, result);
+  rc_write_exemplar(&job->image, &problem, result);
   return RECEDE_OK;
 }
 
 static recede_status synthesize_as_paper(recede_job *job, const recede_plane *plane,
                                          const recede_view *result) {
   rc_context *context = &job->context;
-  rc_views views = {&job->image, NULL, job->source.data ? &job->source : NULL};
+  rc_views views = exemplar_of(job);
   rc_image exemplar, made;
   rc_mask flags;
   RC_TRY(rc_shrink(context, &views, 1, &exemplar, &flags));
@@ -436,7 +289,7 @@ static recede_status synthesize_as_paper(recede_job *job, const recede_plane *pl
   RC_TRY(rc_synthesize_paper(context, &exemplar, &flags, plane, &job->params, &made));
   RC_TRY(rc_stage(context, "write", .97, 1));
   context->report.filled_pixels = (uint64_t)made.width * (uint64_t)made.height;
-  write_synthesis(&made, NULL, result);
+  rc_write_synthesis(&made, NULL, result);
   return RECEDE_OK;
 }
 
@@ -450,14 +303,10 @@ static recede_status synthesize(recede_job *job, const recede_view *result) {
   RC_TRY(rc_stage(context, "prepare", 0, .01));
   RC_TRY(check_result(job, result, false));
   RC_TRY(plan_synthesis(job, result->width, result->height));
-  job->mask.data = NULL;
-  RC_TRY(fall_back(job,
-                   resolve_plane(job, framed->width, framed->height, (framed->width - 1) / 2.,
-                                 (framed->height - 1) / 2., orientation),
-                   orientation));
-  if (in_plane)
-    orientation->plane.width = result->width, orientation->plane.height = result->height;
-  describe(orientation);
+  rc_views views = exemplar_of(job);
+  const double on[2] = {(framed->width - 1) / 2., (framed->height - 1) / 2.};
+  RC_TRY(rc_trusted_orientation(context, &job->params, &views, framed->width, framed->height, on,
+                                orientation));
   RC_TRY(rc_stage(context, "prepare", .03, .05));
   RC_TRY(in_plane ? synthesize_in_plane(job, &orientation->plane, result)
                   : synthesize_as_paper(job, &orientation->plane, result));

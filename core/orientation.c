@@ -1,0 +1,105 @@
+#include "orientation.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "plane/estimate.h"
+
+/* Orientation is read from a copy of the picture no longer than this: the estimate's accuracy does
+ * not gain from more, its time does. */
+#define ESTIMATE_LONGEST_PX 1000
+
+static int longer(int width, int height) { return width > height ? width : height; }
+
+/* The plane gets the frame's size and a focal length by the frame's field of view. */
+static recede_status estimate(rc_context *context, double fov_deg, const rc_views *views, int width,
+                              int height, const double on[2], recede_orientation *orientation) {
+  const recede_view *picture = views->image;
+  int longest = longer(picture->width, picture->height);
+  int factor = (longest + ESTIMATE_LONGEST_PX - 1) / ESTIMATE_LONGEST_PX;
+  rc_image image;
+  rc_mask flags;
+  recede_plane *plane = &orientation->plane, frame;
+  const double small_on[2] = {(on[0] + .5) / factor - .5, (on[1] + .5) / factor - .5};
+  RC_TRY(recede_plane_from_angles(width, height, 0, 0, fov_deg, &frame));
+  double fov_of_picture = 2 * atan(.5 * longest / frame.focal_px) * (180 / 3.14159265358979323846);
+  rc_block *mark = rc_mark(context);
+  RC_TRY(rc_stage(context, "orientation", 0, .03));
+  RC_TRY(rc_shrink(context, views, factor, &image, &flags));
+  RC_TRY(rc_estimate_plane(context, &image, &flags, fmax(fov_of_picture, 1),
+                           views->mask ? small_on : NULL, plane, &orientation->confidence));
+  rc_release(context, mark);
+  plane->focal_px = frame.focal_px;
+  plane->width = width;
+  plane->height = height;
+  return RECEDE_OK;
+}
+
+static recede_status explain(rc_context *context, recede_status status, const char *what) {
+  return status == RECEDE_OK
+             ? RECEDE_OK
+             : rc_fail(context, status,
+                       "The %s does not give a plane: its points must be distinct, in order around "
+                       "it, and apart from what is filled.",
+                       what);
+}
+
+static recede_status find_plane(rc_context *context, const recede_params *p, const rc_views *views,
+                                int width, int height, const double on[2],
+                                recede_orientation *orientation) {
+  recede_plane *plane = &orientation->plane;
+  const double *h = p->horizon;
+  orientation->confidence = 1;
+  switch (p->orientation) {
+    case RECEDE_ORIENTATION_ANGLES:
+      return recede_plane_from_angles(width, height, p->slant_deg, p->tilt_deg, p->fov_deg, plane);
+    case RECEDE_ORIENTATION_FRONTAL:
+      return recede_plane_from_angles(width, height, 0, 0, p->fov_deg, plane);
+    case RECEDE_ORIENTATION_HORIZON:
+      return explain(context,
+                     recede_plane_from_horizon(width, height, p->fov_deg, h[0], h[1], h[2], h[3],
+                                               on[0], on[1], plane),
+                     "horizon");
+    case RECEDE_ORIENTATION_QUAD:
+      return explain(context, recede_plane_from_quad(width, height, p->fov_deg, p->quad, 1, plane),
+                     "quad");
+    default: orientation->estimated = 1;
+  }
+  return estimate(context, p->fov_deg, views, width, height, on, orientation);
+}
+
+static void describe(recede_orientation *orientation) {
+  recede_plane_angles(&orientation->plane, &orientation->slant_deg, &orientation->tilt_deg,
+                      &orientation->fov_deg);
+  if (!recede_plane_horizon(&orientation->plane, orientation->horizon))
+    for (int i = 0; i < 4; i++) orientation->horizon[i] = NAN;
+}
+
+recede_status rc_resolve_orientation(rc_context *context, const recede_params *params,
+                                     const rc_views *views, int width, int height,
+                                     const double on[2], recede_orientation *orientation) {
+  memset(orientation, 0, sizeof *orientation);
+  RC_TRY(find_plane(context, params, views, width, height, on, orientation));
+  describe(orientation);
+  return RECEDE_OK;
+}
+
+recede_status rc_trusted_orientation(rc_context *context, const recede_params *params,
+                                     const rc_views *views, int width, int height,
+                                     const double on[2], recede_orientation *orientation) {
+  recede_status status =
+      rc_resolve_orientation(context, params, views, width, height, on, orientation);
+  if (!orientation->estimated) return status;
+  if (status != RECEDE_OK && status != RECEDE_NO_PLANE) return status;
+  if (status != RECEDE_OK) orientation->confidence = 0;
+  if (orientation->confidence >= RECEDE_CONFIDENCE_LOW) return RECEDE_OK;
+  rc_warn(
+      context,
+      "The orientation could not be read from the picture with confidence (%.2f); it was filled "
+      "without perspective. Give slant and tilt, or a horizon.",
+      orientation->confidence);
+  RC_TRY(recede_plane_from_angles(width, height, 0, 0, params->fov_deg, &orientation->plane));
+  describe(orientation);
+  return RECEDE_OK;
+}
