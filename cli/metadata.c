@@ -1,5 +1,6 @@
 #include "metadata.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "metadata_parts.h"
@@ -76,6 +77,13 @@ image_status metadata_carry(const image_file *from, const image_format *format, 
   if (bytes->size > LONGEST_FILE) {
     g_snprintf(message->text, sizeof message->text, "The file is too long for metadata.");
     return IMAGE_OK;
+  }
+  /* GLib ends the process where it gets no memory: ask before for what its arrays grow to. */
+  void *room = malloc(2 * bytes->size + ((size_t)1 << 20));
+  free(room);
+  if (!room) {
+    g_strlcpy(message->text, "not enough memory to write", sizeof message->text);
+    return IMAGE_NO_MEMORY;
   }
   metadata_parts parts = parts_of(from, keep);
   if (!keep) drop_description(&parts);
