@@ -8,15 +8,15 @@ import cv2
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'quality'))
-from evaluation import prepared_folder  # noqa: E402
+from evaluation import data_folder, working_folder  # noqa: E402
 
 EDGE = 105  # px, the paper's
-# File, box of a photo as parts of it (x0, y0, x1, y1) or None for a flat texture to be seen in
+# Photo or texture, box of a photo as parts of it (x0, y0, x1, y1) or None for a flat texture to be seen in
 # perspective, slant, tilt, texels of a flat texture per px at the centre.
 EXEMPLARS = {
     'desert': ('photo/dunes.jpg', (.2, .88, .4, 1.), 30, 18, None),
-    'flowers': ('flat/p_flowers.png', None, 60, 20, 5.),
-    'sea': ('flat/p_waves.png', None, 50, 0, 4.),
+    'flowers': ('p_flowers', None, 60, 20, 5.),
+    'sea': ('p_waves', None, 50, 0, 4.),
     'pebbles': ('photo/pebble_beach.jpg', (.2, .1, .8, 1.), 60, 0, None),
 }
 
@@ -40,15 +40,23 @@ def seen_in_perspective(texture, edge, slant, tilt, texels_per_px, fov=50):
     return cv2.resize(big, (edge, edge), interpolation=cv2.INTER_AREA)
 
 
+def texture(name):
+    """A flat texture; those that the evaluation data draws are drawn at their first use."""
+    folder = str(working_folder())
+    if folder not in sys.path:
+        sys.path.insert(0, folder)
+    import make_cases
+    return make_cases.load_tex(name)
+
+
 def exemplar(name, edge=EDGE):
     """(picture, slant, tilt) or None without the evaluation data."""
-    folder = prepared_folder()
-    if folder is None:
+    if data_folder() is None:
         return None
     file, box, slant, tilt, texels = EXEMPLARS[name]
-    picture = cv2.imread(str(folder / file))
     if box is None:
-        return seen_in_perspective(picture, edge, slant, tilt, texels), slant, tilt
+        return seen_in_perspective(texture(file), edge, slant, tilt, texels), slant, tilt
+    picture = cv2.imread(str(data_folder() / file))
     height, width = picture.shape[:2]
     x0, x1 = int(box[0] * width), int(box[2] * width)
     y0, y1 = int(box[1] * height), int(box[3] * height)
