@@ -131,21 +131,26 @@ static void take_angles(rp_panel *panel) {
 
 static void on_estimate(gpointer user, const rp_request *request) {
   rp_panel *panel = user;
+  const recede_orientation *found = &request->orientation;
+  double slant_deg, tilt_deg;
   gtk_widget_set_sensitive(panel->estimate_button, TRUE);
-  if (request->status != RECEDE_OK || request->orientation.confidence < RECEDE_CONFIDENCE_LOW) {
-    take_angles(panel); /* what is shown is what will be filled */
-    say(panel, _("The orientation could not be read from the picture with confidence. Drag the "
-                 "horizon or the grid until the squares lie on the ground."));
+  if (request->status == RECEDE_OK && found->confidence >= RECEDE_CONFIDENCE_LOW) {
+    char *text = g_strdup_printf(_("Read from the picture with a confidence of %.0f %%. Look "
+                                   "whether the squares lie on the ground; drag them if not."),
+                                 100 * found->confidence);
+    set_values(panel, round(found->slant_deg * 10) / 10, round(found->tilt_deg * 10) / 10);
+    show_plane(panel);
+    say(panel, text);
+    g_free(text);
     return;
   }
-  char *text = g_strdup_printf(_("Read from the picture with a confidence of %.0f %%. Look whether "
-                                 "the squares lie on the ground; drag them if not."),
-                               100 * request->orientation.confidence);
-  set_values(panel, round(request->orientation.slant_deg * 10) / 10,
-             round(request->orientation.tilt_deg * 10) / 10);
-  say(panel, text);
-  show_plane(panel);
-  g_free(text);
+  take_angles(panel); /* what is shown is what will be filled */
+  if (rp_scene_first_guess(&panel->scene, &slant_deg, &tilt_deg)) {
+    set_values(panel, round(slant_deg * 10) / 10, round(tilt_deg * 10) / 10);
+    show_plane(panel);
+  }
+  say(panel, _("The orientation could not be read from the picture with confidence. Drag the "
+               "horizon or the grid until the squares lie on the ground."));
 }
 
 static void start_estimate(rp_panel *panel) {

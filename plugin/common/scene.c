@@ -36,6 +36,24 @@ gboolean rp_scene_set_angles(rp_scene *scene, double slant_deg, double tilt_deg,
   return TRUE;
 }
 
+/* Where photographers like to have it, and clear of the hole. */
+#define GUESSED_HORIZON .3
+#define ABOVE_HOLE .2
+
+gboolean rp_scene_first_guess(const rp_scene *scene, double *slant_deg, double *tilt_deg) {
+  const rp_proxy *proxy = &scene->proxy;
+  double ends[4], fov_deg, slant, tilt;
+  double y = fmin(GUESSED_HORIZON * proxy->height, scene->centre_y - ABOVE_HOLE * proxy->height);
+  recede_plane plane;
+  if (rp_grid_horizon(&scene->plane, ends)) return FALSE;
+  recede_plane_angles(&scene->plane, &slant, &tilt, &fov_deg);
+  if (recede_plane_from_horizon(proxy->width, proxy->height, fov_deg, 0, y, proxy->width, y,
+                                scene->centre_x, scene->centre_y, &plane) != RECEDE_OK)
+    return FALSE;
+  recede_plane_angles(&plane, slant_deg, tilt_deg, &fov_deg);
+  return TRUE;
+}
+
 void rp_scene_set_source(rp_scene *scene, const rp_picture *picture) {
   rp_proxy_set_source(&scene->proxy, picture);
   scene->shade_is_old = TRUE;

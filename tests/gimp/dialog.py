@@ -265,4 +265,5 @@ def main():
     tap.plan()
 
 
-main()
+if __name__ == "__main__":
+    main()
