@@ -11,8 +11,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'quality'))
 from evaluation import data_folder, working_folder  # noqa: E402
 
 EDGE = 105  # px, the paper's
-# Photo or texture, box of a photo as parts of it (x0, y0, x1, y1) or None for a flat texture to be seen in
-# perspective, slant, tilt, texels of a flat texture per px at the centre.
+# Photo or texture, box of a photo as parts of it (x0, y0, x1, y1) or None for a flat texture to be
+# seen in perspective, slant, tilt, texels of a flat texture per px at the centre.
 EXEMPLARS = {
     'desert': ('photo/dunes.jpg', (.2, .88, .4, 1.), 30, 18, None),
     'flowers': ('p_flowers', None, 60, 20, 5.),

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Side by side in the manner of the paper's Figures 8 to 10: the exemplar, its scale map, our result
-(repaired, and as printed), and the baseline's, for desert, flowers, sea and pebbles.
+"""Side by side in the manner of the paper's Figures 8 to 10: the exemplar, its scale map, our
+result (repaired, and as printed), and the baseline's, for desert, flowers, sea and pebbles.
 
 Writes out/figures/NAME.png and prints the names. The pictures are made by the command itself.
 """

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""The paper's Table 1 again: 128 and 256 px square from 105 px exemplars, several textures and runs,
-the paper's method (repaired and as printed) beside its baseline.
+"""The paper's Table 1 again: 128 and 256 px square from 105 px exemplars, several textures and
+runs, the paper's method (repaired and as printed) beside its baseline.
 
 CPU seconds of one thread. Energy: the report's (eq. 8 with each method's own neighbourhoods, not
-comparable between methods), and `nearest`: the mean distance of the result's 8 x 8 neighbourhoods to
-their true nearest in the exemplar, in levels of 255 per value, the same for all.
+comparable between methods), and `nearest`: the mean distance of the result's 8 x 8 neighbourhoods
+to their true nearest in the exemplar, in levels of 255 per value, the same for all.
 """
 import argparse
 import json

@@ -10,8 +10,13 @@ DISPLAY=:$(cat "$work/display")
 export DISPLAY XDG_RUNTIME_DIR=$work GSETTINGS_BACKEND=memory
 chmod 700 "$work"
 # shellcheck disable=SC2016 # expanded inside
-dbus-run-session -- bash -c 'openbox >/dev/null 2>&1 & manager=$!; "$@"; status=$?; kill $manager; exit $status' \
-  windowed "$@" 2>"$work/stderr"
+dbus-run-session -- bash -c '
+  openbox >/dev/null 2>&1 &
+  manager=$!
+  "$@"
+  status=$?
+  kill $manager
+  exit $status' windowed "$@" 2>"$work/stderr"
 status=$?
 grep -vE 'dbus-daemon|SpiRegistry|^$' "$work/stderr" | tail -20 >&2
 exit $status
