@@ -19,6 +19,8 @@
 #define MAX_LEVELS 10
 /* The coarsest hole is at least this far across: one level too many breaks regular patterns. */
 #define COARSEST_HOLE_PX 18
+/* A coarser level has too few places for a patch that lies wholly in source. */
+#define LEAST_LEVEL_PX 48
 /* Each px deeper in the hole counts 1.3 times less; 1.15 is too trusting. */
 #define CONFIDENCE_FALLOFF 1.3f
 #define COHERENCE .03f
@@ -95,6 +97,9 @@ static recede_status build_pyramid(rc_context *context, const rc_problem *proble
   e->level_count = 1;
   for (;;) {
     int last = e->level_count - 1;
+    const rc_mask *flags = &e->flags[last];
+    int shorter = flags->width < flags->height ? flags->width : flags->height;
+    if (shorter / 2 < LEAST_LEVEL_PX) return RECEDE_OK;
     RC_TRY(hole_width(context, &e->flags[last], &width));
     if (width / 2 < COARSEST_HOLE_PX || e->level_count == MAX_LEVELS) return RECEDE_OK;
     RC_TRY(rc_half(context, &e->images[last], &e->flags[last], &e->images[last + 1],
@@ -107,7 +112,7 @@ static float byte_gain(const rc_image *residual, const rc_mask *flags) {
   double square = 0, count = 0;
   size_t channels = (size_t)residual->channels;
   for (size_t i = 0; i < (size_t)residual->width * (size_t)residual->height; i++) {
-    if (!(flags->data[i] & RC_KNOWN)) continue;
+    if (!(flags->data[i] & RC_SOURCE)) continue;
     for (size_t k = 0; k < channels; k++) {
       double v = residual->data[i * channels + k];
       square += v * v;

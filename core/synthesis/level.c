@@ -15,6 +15,7 @@
 #define ENOUGH_SOURCE 2.0
 #define LEAST_SOURCE_PIXELS 64
 #define WIDEN_BY 1.3f
+#define REACH_BY 1.05f
 #define WIDEST 8.f
 
 static uint32_t encode(float value, float gain) {
@@ -133,15 +134,24 @@ static float log2_w_at(const rc_level *level, int x, int y) {
   return rc_log2(fmaxf(rc_level_w(level, rc_level_x(level, x), rc_level_y(level, y)), 1e-4f));
 }
 
-/* Class of each target pixel; counts[] pixels in each class. */
-static void classify(rc_level *level, double counts[RC_MAX_CLASSES]) {
+/* What a class holds: target pixels, and their smallest and largest log2 w. */
+typedef struct class_extent {
+  double count;
+  float least, most;
+} class_extent;
+
+static void classify(rc_level *level, class_extent extents[RC_MAX_CLASSES]) {
+  for (int c = 0; c < RC_MAX_CLASSES; c++) extents[c] = (class_extent){0, 1e9f, -1e9f};
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
       if (!rc_level_is_target(level, x, y)) continue;
-      int c = (int)((log2_w_at(level, x, y) - level->ranges.log2_w0) / RC_CLASS_OCTAVES);
+      float v = log2_w_at(level, x, y);
+      int c = (int)((v - level->ranges.log2_w0) / RC_CLASS_OCTAVES);
       c = c < 0 ? 0 : c >= level->ranges.count ? level->ranges.count - 1 : c;
       level->classes[rc_level_at(level, x, y)] = (uint8_t)c;
-      counts[c]++;
+      extents[c].count++;
+      extents[c].least = fminf(extents[c].least, v);
+      extents[c].most = fmaxf(extents[c].most, v);
     }
 }
 
@@ -158,17 +168,33 @@ static void make_classes(rc_level *level) {
   level->ranges.count = count > RC_MAX_CLASSES ? RC_MAX_CLASSES : count;
 }
 
+/* Widens a range until a target of this w has some source well inside it: a class's nearest and
+ * farthest pixels are not its middle, and a footprint needs more room the more it is scaled. */
+static void reach_source(const rc_level *level, float w, float *low, float *high) {
+  int begin, end;
+  for (;;) {
+    bins_between(level, w * *low * REACH_BY, w * *high / REACH_BY, &begin, &end);
+    if (end - begin >= LEAST_SOURCE_PIXELS || *high > WIDEST) return;
+    *low /= REACH_BY, *high *= REACH_BY;
+  }
+}
+
 /* Starts narrow and widens a class's range while it holds too little source. */
-static void set_ranges(rc_level *level, const double counts[RC_MAX_CLASSES]) {
+static void set_ranges(rc_level *level, const class_extent extents[RC_MAX_CLASSES]) {
   for (int c = 0; c < level->ranges.count; c++) {
     float low = NARROW_LOW, high = NARROW_HIGH;
     float w = rc_exp2(level->ranges.log2_w0 + ((float)c + .5f) * RC_CLASS_OCTAVES);
     for (;;) {
       int begin, end;
       bins_between(level, w * low, w * high, &begin, &end);
-      if (end - begin >= fmax(ENOUGH_SOURCE * counts[c], LEAST_SOURCE_PIXELS) || high > WIDEST)
+      if (end - begin >= fmax(ENOUGH_SOURCE * extents[c].count, LEAST_SOURCE_PIXELS) ||
+          high > WIDEST)
         break;
       low /= WIDEN_BY, high *= WIDEN_BY;
+    }
+    if (extents[c].count > 0) {
+      reach_source(level, rc_exp2(extents[c].least), &low, &high);
+      reach_source(level, rc_exp2(extents[c].most), &low, &high);
     }
     level->ranges.low[c] = low;
     level->ranges.high[c] = high;
@@ -192,7 +218,7 @@ recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_
                            const rc_chart *chart, float gamma, float gain, const rc_ranges *ranges,
                            rc_level *level) {
   size_t count = (size_t)image->width * (size_t)image->height;
-  double counts[RC_MAX_CLASSES] = {0};
+  class_extent extents[RC_MAX_CLASSES];
   memset(level, 0, sizeof *level);
   level->width = image->width;
   level->height = image->height;
@@ -215,7 +241,7 @@ recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_
   RC_TRY(sort_sources(context, level));
   make_classes(level);
   if (ranges) level->ranges = *ranges;
-  classify(level, counts);
-  if (!ranges) set_ranges(level, counts);
+  classify(level, extents);
+  if (!ranges) set_ranges(level, extents);
   return RECEDE_OK;
 }

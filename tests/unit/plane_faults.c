@@ -1,0 +1,311 @@
+/* What the plane engine does with bad pixels, tiny pictures, cancelling and little memory. */
+#include <math.h>
+#include <string.h>
+
+#include "plane_scene.h"
+
+static const area everything = {0, 0, 1 << 20, 1 << 20};
+static const area hole = {40, 35, 75, 70};
+
+static task small_task(int channels, recede_type type, const char *settings) {
+  task t = task_new(picture_of_plane(120, 100, channels, type, grains, 5, 40, 0), settings);
+  t.params.slant_deg = 40;
+  task_hole(&t, hole);
+  return t;
+}
+
+static picture filled_part(const task *t) {
+  picture p =
+      picture_new(hole.x1 - hole.x0, hole.y1 - hole.y0, t->image.view.channels, t->image.view.type);
+  gsize pixel = t->image.view.stride_bytes / (gsize)t->image.view.width;
+  for (int y = hole.y0; y < hole.y1; y++)
+    memcpy(p.pixels + (gsize)(y - hole.y0) * p.view.stride_bytes,
+           t->result.pixels + (gsize)y * t->result.view.stride_bytes + (gsize)hole.x0 * pixel,
+           p.view.stride_bytes);
+  return p;
+}
+
+static void assert_finite(const task *t) {
+  for (int y = hole.y0; y < hole.y1; y++)
+    for (int x = hole.x0; x < hole.x1; x++)
+      for (int k = 0; k < t->result.view.channels; k++)
+        g_assert_true(isfinite(picture_get(&t->result, x, y, k)));
+}
+
+static void assert_same(const picture *a, const picture *b) {
+  g_assert_true(memcmp(a->pixels, b->pixels, picture_bytes(a)) == 0);
+}
+
+/* Transparent pixels all over, one of them beside the hole; their colour is read by nobody. */
+static picture fill_over_transparency(float colour) {
+  task t = small_task(4, RECEDE_FLOAT, "");
+  for (int y = 0; y < 100; y++)
+    for (int x = 0; x < 120; x++) {
+      bool clear = x < 25 || (x == hole.x0 - 1 && y == 50) || (x > 90 && y > 80);
+      for (int k = 0; k < 4 && clear; k++) picture_set(&t.image, x, y, k, k == 3 ? 0 : colour);
+    }
+  task_succeeds(&t);
+  g_assert_cmpuint(t.report.nonfinite_pixels, ==, 0);
+  assert_finite(&t);
+  g_assert_cmpfloat(moments_of(&t.result, &t.mask, true, everything, 3).least, ==, 1);
+  g_assert_cmpfloat(moments_of(&t.result, &t.mask, true, everything, 0).deviation, >, .05);
+  picture part = filled_part(&t);
+  task_clear(&t);
+  return part;
+}
+
+static void transparent_is_never_read(void) {
+  static const float colours[] = {50.f, -3.f, NAN, INFINITY};
+  picture first = fill_over_transparency(0);
+  for (guint i = 0; i < G_N_ELEMENTS(colours); i++) {
+    picture other = fill_over_transparency(colours[i]);
+    assert_same(&first, &other);
+    picture_clear(&other);
+  }
+  picture_clear(&first);
+}
+
+static picture fill_beside_nonfinite(float value, float mask) {
+  task t = small_task(3, RECEDE_FLOAT, "");
+  static const int spots[][2] = {{5, 5}, {39, 50}, {100, 60}, {60, 90}, {75, 35}, {110, 20}};
+  for (int i = 0; i < (int)G_N_ELEMENTS(spots); i++)
+    picture_set(&t.image, spots[i][0], spots[i][1], i % 3, value);
+  picture_set(&t.image, 50, 50, 1, value); /* inside the hole */
+  picture_fill(&t.mask, hole, mask);
+  task_succeeds(&t);
+  g_assert_cmpuint(t.report.nonfinite_pixels, ==, G_N_ELEMENTS(spots));
+  assert_finite(&t);
+  picture part = filled_part(&t);
+  task_clear(&t);
+  return part;
+}
+
+static void nonfinite_is_counted_and_never_a_source(void) {
+  picture first = fill_beside_nonfinite(NAN, 1);
+  picture other = fill_beside_nonfinite(-INFINITY, 1);
+  picture blended = fill_beside_nonfinite(INFINITY, .5f);
+  assert_same(&first, &other);
+  picture_clear(&first);
+  picture_clear(&other);
+  picture_clear(&blended);
+}
+
+/* Values from -1 to 3 are filled with values from -1 to 3, and the range of bytes is no limit. */
+static void wide_values_survive(void) {
+  task t = small_task(3, RECEDE_FLOAT, "");
+  for (int y = 0; y < 100; y++)
+    for (int x = 0; x < 120; x++)
+      for (int k = 0; k < 3; k++)
+        picture_set(&t.image, x, y, k, 6 * picture_get(&t.image, x, y, k) - 2);
+  task_succeeds(&t);
+  moments known = moments_of(&t.image, &t.mask, false, everything, 0);
+  moments made = moments_of(&t.result, &t.mask, true, everything, 0);
+  g_test_message("known %.2f..%.2f, made %.2f..%.2f", known.least, known.most, made.least,
+                 made.most);
+  g_assert_cmpfloat(made.least, <, 0);
+  g_assert_cmpfloat(made.most, >, 1.5);
+  g_assert_cmpfloat(made.least, >, known.least - .5 * (known.most - known.least));
+  g_assert_cmpfloat(made.most, <, known.most + .5 * (known.most - known.least));
+  task_clear(&t);
+}
+
+static recede_status status_of(int width, int height, int channels, area masked) {
+  task t = task_new(picture_of_plane(width, height, channels, RECEDE_FLOAT, grains, 3, 30, 0), "");
+  t.params.slant_deg = 30;
+  task_hole(&t, masked);
+  task_run(&t);
+  g_test_message("%d x %d: %s%s", width, height, t.message, t.report.warning);
+  if (t.status == RECEDE_OK) {
+    task_assert_outside(&t);
+    for (int y = 0; y < height; y++)
+      for (int x = 0; x < width; x++) g_assert_true(isfinite(picture_get(&t.result, x, y, 0)));
+  } else {
+    g_assert_cmpstr(t.message, !=, "");
+    g_assert_true(task_result_untouched(&t));
+  }
+  task_clear(&t);
+  return t.status;
+}
+
+static void tiny_and_degenerate(void) {
+  g_assert_cmpint(status_of(60, 50, 3, (area){0, 0, 0, 0}), ==, RECEDE_EMPTY_TARGET);
+  g_assert_cmpint(status_of(60, 50, 3, (area){0, 0, 60, 50}), ==, RECEDE_EMPTY_SOURCE);
+  g_assert_cmpint(status_of(1, 1, 1, (area){0, 0, 0, 0}), ==, RECEDE_EMPTY_TARGET);
+  g_assert_cmpint(status_of(1, 1, 3, (area){0, 0, 1, 1}), ==, RECEDE_EMPTY_SOURCE);
+  g_assert_cmpint(status_of(2, 3, 3, (area){0, 0, 1, 1}), ==, RECEDE_EMPTY_SOURCE);
+  for (int edge = 2; edge < 40; edge += edge < 14 ? 1 : 6)
+    for (int channels = 1; channels <= 4; channels++) {
+      recede_status status = status_of(edge, edge + channels % 2, channels,
+                                       (area){edge / 2, edge / 2, edge / 2 + 1, edge / 2 + 1});
+      g_assert_true(status == RECEDE_OK || status == RECEDE_EMPTY_SOURCE);
+    }
+  g_assert_cmpint(status_of(200, 1, 3, (area){90, 0, 100, 1}), ==, RECEDE_OK);
+  g_assert_cmpint(status_of(1, 200, 3, (area){0, 90, 1, 100}), ==, RECEDE_OK);
+  g_assert_cmpint(status_of(9, 300, 3, (area){0, 120, 9, 160}), ==, RECEDE_OK);
+}
+
+/* A hole of which each part lies apart: single pixels over the whole picture. */
+static void scattered_mask(void) {
+  task t = small_task(3, RECEDE_U8, "quality=draft");
+  picture_fill(&t.mask, hole, 0);
+  for (int y = 4; y < 100; y += 16)
+    for (int x = 3; x < 120; x += 16) picture_fill(&t.mask, (area){x, y, x + 1, y + 2}, 1);
+  task_succeeds(&t);
+  g_assert_cmpuint(t.report.filled_pixels, ==, 2 * 6 * 8);
+  task_clear(&t);
+}
+
+static int calls_left;
+static int cancel_at(void *user, const char *stage, double fraction) {
+  double *last = user;
+  g_assert_cmpstr(stage, !=, "");
+  g_assert_cmpfloat(fraction, >=, *last);
+  g_assert_cmpfloat(fraction, <=, 1);
+  *last = fraction;
+  return --calls_left == 0;
+}
+
+static void cancel_at_every_poll(void) {
+  recede_status status = RECEDE_CANCELLED;
+  int call = 0;
+  while (status == RECEDE_CANCELLED) {
+    task t = small_task(3, RECEDE_U8, "quality=draft engine-iterations=2");
+    double last = 0;
+    calls_left = ++call;
+    t.host.progress = cancel_at;
+    t.host.user = &last;
+    t.host.threads = 1 + call % 2;
+    task_run(&t);
+    status = t.status;
+    g_assert_true(status == RECEDE_CANCELLED ? task_result_untouched(&t) : status == RECEDE_OK);
+    task_clear(&t);
+  }
+  g_test_message("%d polls", call - 1);
+  g_assert_cmpint(call, >, 5);
+}
+
+static gpointer cancel_later(gpointer user) {
+  g_usleep(3000);
+  recede_job_cancel(user);
+  return NULL;
+}
+
+/* From another thread; the job can be used again. */
+static void cancel_from_a_thread(void) {
+  task t = small_task(3, RECEDE_U8, "quality=best engine-iterations=100");
+  recede_job *job = recede_job_new(&t.host);
+  t.result = picture_copy(&t.image);
+  memset(t.result.pixels, 0xa5, picture_bytes(&t.result));
+  recede_job_set_image(job, &t.image.view);
+  recede_job_set_mask(job, &t.mask.view);
+  recede_job_set_params(job, &t.params);
+  GThread *thread = g_thread_new("cancel", cancel_later, job);
+  g_assert_cmpint(recede_job_fill(job, &t.result.view), ==, RECEDE_CANCELLED);
+  g_thread_join(thread);
+  g_assert_true(task_result_untouched(&t));
+  task_set(&t, "quality=draft engine-iterations=1");
+  recede_job_set_params(job, &t.params);
+  g_assert_cmpint(recede_job_fill(job, &t.result.view), ==, RECEDE_OK);
+  task_assert_outside(&t);
+  recede_job_free(&job);
+  task_clear(&t);
+}
+
+static void every_allocation_fails(void) {
+  recede_status status = RECEDE_NO_MEMORY;
+  guint64 n = 0;
+  while (status == RECEDE_NO_MEMORY) {
+    task t = task_new(picture_of_plane(100, 100, 3, RECEDE_U8, bricks, 9, 40, 0),
+                      "slant=40 surface=auto quality=draft engine-iterations=1");
+    task_hole(&t, (area){30, 25, 75, 70});
+    t.host.fail_allocation = ++n;
+    task_run(&t);
+    status = t.status;
+    if (status != RECEDE_OK) {
+      g_assert_cmpint(status, ==, RECEDE_NO_MEMORY);
+      g_assert_cmpstr(t.message, !=, "");
+      g_assert_true(task_result_untouched(&t));
+    }
+    task_clear(&t);
+  }
+  g_test_message("%d allocations", (int)n - 1);
+  g_assert_cmpuint(n, >, 20);
+}
+
+/* The estimate before the run is the run's own, and bounds its peak. */
+static void check_memory(int width, int height, area masked, int channels, const char *quality) {
+  picture image = picture_new(width, height, channels, RECEDE_U8);
+  for (gsize i = 0; i < picture_bytes(&image); i++)
+    image.pixels[i] = (guint8)(255 * noise_at((int)i / 9, 0, 1));
+  task t = task_new(image, "slant=40 surface=auto engine-iterations=1");
+  guint64 bytes;
+  double seconds;
+  task_set(&t, quality);
+  task_hole(&t, masked);
+  recede_job *job = recede_job_new(&t.host);
+  recede_job_set_image(job, &t.image.view);
+  recede_job_set_mask(job, &t.mask.view);
+  recede_job_set_params(job, &t.params);
+  g_assert_cmpint(recede_job_estimate_fill(job, &bytes, &seconds), ==, RECEDE_OK);
+  recede_job_free(&job);
+  task_succeeds(&t); /* peak <= estimate */
+  g_test_message("%d x %d x %d, hole %d x %d, %s: %.1f of %.1f MB", width, height, channels,
+                 masked.x1 - masked.x0, masked.y1 - masked.y0, quality,
+                 (double)t.report.peak_bytes / 1e6, (double)bytes / 1e6);
+  g_assert_cmpuint(t.report.estimated_bytes, ==, bytes);
+  task_clear(&t);
+}
+
+static void peak_within_the_estimate(void) {
+  static const char *const qualities[] = {"quality=draft", "quality=normal", "quality=best"};
+  for (int i = 0; i < 6; i++) {
+    int channels = i & 1 ? 3 : 1;
+    check_memory(64, 64, (area){20, 20, 44, 44}, channels, qualities[i / 2]);
+    check_memory(64, 64, (area){2, 2, 62, 58}, channels, qualities[i / 2]);
+    check_memory(300, 200, (area){100, 80, 130, 120}, channels, qualities[i / 2]);
+  }
+  check_memory(300, 200, (area){10, 20, 290, 180}, 3, qualities[1]);
+  check_memory(1000, 700, (area){500, 400, 540, 430}, 3, qualities[0]);
+  check_memory(1000, 700, (area){50, 300, 950, 330}, 1, qualities[0]);
+  check_memory(1000, 700, (area){300, 200, 700, 500}, 3, qualities[0]);
+}
+
+/* One mebibyte less than the estimate is refused, and both numbers are said. */
+static void too_large_is_refused(void) {
+  task t = small_task(3, RECEDE_U8, "quality=draft engine-iterations=1");
+  guint64 bytes;
+  double seconds;
+  task_succeeds(&t);
+  guint64 estimate = t.report.estimated_bytes;
+  for (int n = 0; n < 2; n++) {
+    t.host.memory_bytes = n ? estimate : estimate - (1 << 20);
+    recede_job *job = recede_job_new(&t.host);
+    recede_job_set_image(job, &t.image.view);
+    recede_job_set_mask(job, &t.mask.view);
+    recede_job_set_params(job, &t.params);
+    g_assert_cmpint(recede_job_estimate_fill(job, &bytes, &seconds), ==,
+                    n ? RECEDE_OK : RECEDE_TOO_LARGE);
+    g_assert_cmpuint(bytes, ==, estimate);
+    recede_job_free(&job);
+    task_run(&t);
+    g_assert_cmpint(t.status, ==, n ? RECEDE_OK : RECEDE_TOO_LARGE);
+    g_assert_true(n || task_result_untouched(&t));
+    g_assert_true(n || strstr(t.message, "MiB"));
+  }
+  task_clear(&t);
+}
+
+int main(int argc, char **argv) {
+  g_test_init(&argc, &argv, NULL);
+  g_test_add_func("/plane/transparent", transparent_is_never_read);
+  g_test_add_func("/plane/nonfinite", nonfinite_is_counted_and_never_a_source);
+  g_test_add_func("/plane/wide", wide_values_survive);
+  g_test_add_func("/plane/tiny", tiny_and_degenerate);
+  g_test_add_func("/plane/scattered", scattered_mask);
+  g_test_add_func("/plane/cancel", cancel_at_every_poll);
+  g_test_add_func("/plane/cancel-thread", cancel_from_a_thread);
+  g_test_add_func("/plane/allocations", every_allocation_fails);
+  g_test_add_func("/plane/memory", peak_within_the_estimate);
+  g_test_add_func("/plane/limit", too_large_is_refused);
+  return g_test_run();
+}
