@@ -145,7 +145,8 @@ static void on_estimate(gpointer user, const rp_request *request) {
     return;
   }
   take_angles(panel); /* what is shown is what will be filled */
-  if (rp_scene_first_guess(&panel->scene, &slant_deg, &tilt_deg)) {
+  if (panel->settings->procedure == RP_FILL &&
+      rp_scene_first_guess(&panel->scene, &slant_deg, &tilt_deg)) {
     set_values(panel, round(slant_deg * 10) / 10, round(tilt_deg * 10) / 10);
     show_plane(panel);
   }
@@ -278,7 +279,10 @@ rp_panel *rp_panel_new(rp_host *host, rp_settings *settings, rp_picture *picture
     return NULL;
   }
   build(panel);
-  if (settings->procedure == RP_FILL) take_source(panel);
+  if (settings->procedure == RP_FILL)
+    take_source(panel);
+  else
+    rp_scene_make_exemplar(&panel->scene);
   show_plane(panel);
   say(panel, _("Drag the horizon, its handles or the grid to lay the plane on the picture."));
   if (choice(panel, "orientation") == RECEDE_ORIENTATION_AUTO) start_estimate(panel);

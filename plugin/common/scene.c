@@ -36,6 +36,14 @@ gboolean rp_scene_set_angles(rp_scene *scene, double slant_deg, double tilt_deg,
   return TRUE;
 }
 
+void rp_scene_make_exemplar(rp_scene *scene) {
+  rp_proxy *proxy = &scene->proxy;
+  g_free(proxy->source);
+  proxy->source = proxy->mask;
+  proxy->mask = g_malloc0((gsize)proxy->width * (gsize)proxy->height);
+  scene->shade_is_old = TRUE;
+}
+
 /* Where photographers like to have it, and clear of the hole. */
 #define GUESSED_HORIZON .3
 #define ABOVE_HOLE .2

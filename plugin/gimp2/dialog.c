@@ -71,12 +71,10 @@ static void show_settings(gpointer user, const rp_settings *settings) {
 
 static void add_number(dialog *d, int index) {
   const rp_argument *row = row_of(d, index);
-  gboolean angle = row->type == RP_DOUBLE;
   char *label = g_strdup_printf(row->unit[0] ? "%s (%s):" : "%s:", _(row->label), row->unit);
-  GtkObject *adjustment =
-      gimp_scale_entry_new(GTK_TABLE(d->table), 0, index, label, SCALE_WIDTH, SPIN_DIGITS,
-                           d->settings->values[index], row->minimum, row->maximum, angle ? .5 : 1,
-                           angle ? 5 : 10, angle ? 1 : 0, TRUE, 0, 0, _(row->help), NULL);
+  GtkObject *adjustment = gimp_scale_entry_new(
+      GTK_TABLE(d->table), 0, index, label, SCALE_WIDTH, SPIN_DIGITS, d->settings->values[index],
+      row->minimum, row->maximum, .5, 5, 1, TRUE, 0, 0, _(row->help), NULL);
   g_signal_connect(adjustment, "value-changed", G_CALLBACK(on_number), d);
   d->controls[index] = G_OBJECT(adjustment);
   g_free(label);
@@ -125,26 +123,34 @@ static void on_new_seed(GtkButton *button, gpointer user) {
   set_by_key(d, "seed", g_random_int_range(1, G_MAXINT32));
 }
 
-static void add_seed(dialog *d, int index) {
+/* A whole number: too many of them for a slider. */
+static GtkWidget *add_whole(dialog *d, int index) {
   const rp_argument *row = row_of(d, index);
   GtkWidget *box = rp_ui_box(GTK_ORIENTATION_HORIZONTAL, 6);
   GtkWidget *spin = gtk_spin_button_new_with_range(row->minimum, row->maximum, 1);
-  GtkWidget *button = gtk_button_new_with_mnemonic(_("Ne_w seed"));
   GtkAdjustment *adjustment = gtk_spin_button_get_adjustment(GTK_SPIN_BUTTON(spin));
   gtk_adjustment_set_value(adjustment, d->settings->values[index]);
   gtk_box_pack_start(GTK_BOX(box), spin, TRUE, TRUE, 0);
-  gtk_box_pack_start(GTK_BOX(box), button, FALSE, FALSE, 0);
   GtkWidget *label = attach(d, index, _(row->label), box);
   gtk_label_set_mnemonic_widget(GTK_LABEL(label), spin);
   g_signal_connect(adjustment, "value-changed", G_CALLBACK(on_number), d);
-  g_signal_connect(button, "clicked", G_CALLBACK(on_new_seed), d);
   d->controls[index] = G_OBJECT(adjustment);
+  return box;
+}
+
+static void add_seed(dialog *d, int index) {
+  GtkWidget *box = add_whole(d, index);
+  GtkWidget *button = gtk_button_new_with_mnemonic(_("Ne_w seed"));
+  gtk_box_pack_start(GTK_BOX(box), button, FALSE, FALSE, 0);
+  g_signal_connect(button, "clicked", G_CALLBACK(on_new_seed), d);
 }
 
 static void add_control(dialog *d, int index) {
   const rp_argument *row = row_of(d, index);
   if (strcmp(row->key, "seed") == 0)
     add_seed(d, index);
+  else if (row->type == RP_INT)
+    add_whole(d, index);
   else if (row->type == RP_CHOICE)
     add_choice(d, index);
   else if (row->type == RP_DRAWABLE)
