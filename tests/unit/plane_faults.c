@@ -109,6 +109,73 @@ static void wide_values_survive(void) {
   task_clear(&t);
 }
 
+/* Deep integers and halves: task_succeeds compares what lies outside bit for bit. Halves of 1/8 to
+ * just below 1 are filled with such, give or take the join's and the spline's overshoot. */
+static void deep_types(void) {
+  static const recede_type types[] = {RECEDE_U16, RECEDE_HALF};
+  for (guint i = 0; i < G_N_ELEMENTS(types); i++)
+    for (int channels = 1; channels <= 3; channels += 2) {
+      picture image = picture_new(120, 100, channels, types[i]);
+      for (gsize n = 0; n < picture_bytes(&image) / 2; n++) {
+        guint16 value = (guint16)(0x3000 + 0xbff * noise_at((int)(n / 8), 0, 0));
+        memcpy(image.pixels + 2 * n, &value, 2);
+      }
+      task t = task_new(image, "slant=30 quality=draft");
+      task_hole(&t, hole);
+      task_succeeds(&t);
+      picture part = filled_part(&t);
+      for (gsize n = 0; n < picture_bytes(&part) / 2; n++) {
+        guint16 value;
+        memcpy(&value, part.pixels + 2 * n, 2);
+        if (types[i] == RECEDE_HALF) g_assert_cmpint(value & 0x7fff, <, 0x4000);
+        if (types[i] == RECEDE_U16) g_assert_cmpint(value, >, 0x2000);
+        if (types[i] == RECEDE_U16) g_assert_cmpint(value, <, 0x4c00);
+      }
+      picture_clear(&part);
+      task_clear(&t);
+    }
+}
+
+/* Half a mask blends half of the same fill. */
+static void gray_mask_blends(void) {
+  task whole = small_task(3, RECEDE_FLOAT, ""), half = small_task(3, RECEDE_FLOAT, "");
+  picture_fill(&half.mask, hole, .4f); /* 102 / 255 */
+  task_succeeds(&whole);
+  task_succeeds(&half);
+  for (int y = hole.y0; y < hole.y1; y++)
+    for (int x = hole.x0; x < hole.x1; x++) {
+      float expected =
+          .4f * picture_get(&whole.result, x, y, 1) + .6f * picture_get(&half.image, x, y, 1);
+      g_assert_cmpfloat_with_epsilon(picture_get(&half.result, x, y, 1), expected, 1e-4);
+    }
+  task_clear(&whole);
+  task_clear(&half);
+}
+
+/* The result may be the image's own memory, and rows may have room behind them. */
+static void in_place_with_padding(void) {
+  task t = small_task(3, RECEDE_U8, "quality=draft");
+  task_succeeds(&t);
+  gsize row = t.image.view.stride_bytes, stride = row + 13;
+  guint8 *padded = g_malloc(stride * 100);
+  memset(padded, 0x5a, stride * 100);
+  for (gsize y = 0; y < 100; y++) memcpy(padded + y * stride, t.image.pixels + y * row, row);
+  recede_view view = {padded, stride, 120, 100, 3, RECEDE_U8};
+  recede_job *job = recede_job_new(&t.host);
+  recede_job_set_image(job, &view);
+  recede_job_set_mask(job, &t.mask.view);
+  recede_job_set_params(job, &t.params);
+  g_assert_cmpint(recede_job_fill(job, &view), ==, RECEDE_OK);
+  g_assert_cmphex(recede_job_report(job)->output_hash, ==, t.report.output_hash);
+  for (gsize y = 0; y < 100; y++) {
+    g_assert_true(memcmp(padded + y * stride, t.result.pixels + y * row, row) == 0);
+    for (gsize i = row; i < stride; i++) g_assert_cmpint(padded[y * stride + i], ==, 0x5a);
+  }
+  recede_job_free(&job);
+  g_free(padded);
+  task_clear(&t);
+}
+
 static recede_status status_of(int width, int height, int channels, area masked) {
   task t = task_new(picture_of_plane(width, height, channels, RECEDE_FLOAT, grains, 3, 30, 0), "");
   t.params.slant_deg = 30;
@@ -300,6 +367,9 @@ int main(int argc, char **argv) {
   g_test_add_func("/plane/transparent", transparent_is_never_read);
   g_test_add_func("/plane/nonfinite", nonfinite_is_counted_and_never_a_source);
   g_test_add_func("/plane/wide", wide_values_survive);
+  g_test_add_func("/plane/deep", deep_types);
+  g_test_add_func("/plane/blend", gray_mask_blends);
+  g_test_add_func("/plane/in-place", in_place_with_padding);
   g_test_add_func("/plane/tiny", tiny_and_degenerate);
   g_test_add_func("/plane/scattered", scattered_mask);
   g_test_add_func("/plane/cancel", cancel_at_every_poll);

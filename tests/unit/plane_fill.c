@@ -22,8 +22,8 @@ static task grain_task(double slant, const char *settings) {
   return t;
 }
 
-static guint64 hash_with(int threads, int kernel, gint64 seed) {
-  task t = brick_task(RECEDE_U8, 50, 20, "quality=draft");
+static guint64 hash_of(int threads, int kernel, gint64 seed, const char *settings) {
+  task t = brick_task(RECEDE_U8, 50, 20, settings);
   task_hole(&t, (area){60, 40, 140, 110});
   t.host.threads = threads;
   t.host.kernel = kernel;
@@ -32,6 +32,13 @@ static guint64 hash_with(int threads, int kernel, gint64 seed) {
   guint64 hash = t.report.output_hash;
   task_clear(&t);
   return hash;
+}
+
+static guint64 hash_with(int threads, int kernel, gint64 seed) {
+  return hash_of(threads, kernel, seed, "quality=draft");
+}
+static guint64 raised_hash(int threads, int kernel) {
+  return hash_of(threads, kernel, 7, "quality=draft surface=raised");
 }
 
 /* The bytes of one fill, on every machine and by every compiler. Whoever changes the engine on
@@ -46,6 +53,8 @@ static void same_for_threads_and_kernels(void) {
   for (guint i = 0; i < G_N_ELEMENTS(threads); i++)
     g_assert_cmphex(hash_with(threads[i], -1, 7), ==, hash);
   g_assert_cmphex(hash_with(1, -1, 8), !=, hash);
+  g_assert_cmphex(raised_hash(1, -1), ==, raised_hash(3, 0));
+  g_assert_cmphex(raised_hash(1, -1), !=, hash);
   for (int kernel = 0; kernel < 4; kernel++) {
     task t = brick_task(RECEDE_U8, 50, 20, "quality=draft");
     task_hole(&t, (area){60, 40, 140, 110});
@@ -110,8 +119,10 @@ static void filled_wherever_the_hole_is(void) {
       {"nearest the viewer", {0, 105, WIDTH, HEIGHT}, true},
       {"farthest", {0, 0, WIDTH, 30}, false},
   };
-  for (guint i = 0; i < G_N_ELEMENTS(holes); i++) {
-    task t = grain_task(55, "quality=draft");
+  for (guint n = 0; n < 2 * G_N_ELEMENTS(holes); n++) {
+    guint i = n / 2;
+    task t = grain_task(55, n & 1 ? "quality=draft surface=raised" : "quality=draft surface=flat");
+    g_test_message("surface %s", n & 1 ? "raised" : "flat");
     task_hole(&t, holes[i].hole);
     task_succeeds(&t);
     g_assert_cmpuint(
