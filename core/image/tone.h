@@ -1,21 +1,21 @@
-/* The tone: the smooth brightness and colour of a picture, continued through what is to be filled.
- * Textures are compared and copied without it, so that light that drifts across a photo stays where
- * it is. */
+/* The tone: brightness and colour that drift evenly across a picture. Textures are compared and
+ * copied without it, so that the light stays where it is. */
 #ifndef RECEDE_IMAGE_TONE_H
 #define RECEDE_IMAGE_TONE_H
 
 #include "image/image.h"
 
+/* value = at + slope_x * x + slope_y * y, x and y held within the box of the sources: a trend says
+ * nothing about what lies far outside. */
 typedef struct rc_tone {
-  rc_image base; /* one px for each factor x factor px */
-  int factor;
+  double at[3], slope_x[3], slope_y[3];
+  rc_box box;
+  int channels;
 } rc_tone;
 
-/* A Gaussian of sigma px over the KNOWN pixels; where they are far, ever wider ones take over.
- * smooth false: the mean alone. */
-recede_status rc_tone_new(rc_context *context, const rc_image *image, const rc_mask *flags,
-                          float sigma, bool smooth, rc_tone *tone);
-void rc_tone_at(const rc_tone *tone, int x, int y, float *value);
+/* Least squares over the SOURCE pixels. The trend is used where it explains a good part of their
+ * variance; else, and with drift false, the tone is their mean. */
+void rc_tone_fit(const rc_image *image, const rc_mask *flags, bool drift, rc_tone *tone);
 /* Adds sign * tone to the pixels with that flag. */
 recede_status rc_tone_apply(rc_context *context, const rc_tone *tone, const rc_mask *flags,
                             uint8_t flag, float sign, rc_image *image);

@@ -32,7 +32,6 @@
  * leans less than they do), stones and bushes 0 .. .2. With nothing to lean both maps are the same,
  * and the raised one keeps to whole pixels. */
 #define LEAN_OF_RAISED .25
-#define TONE_SIGMA_OF_LONGEST (1.f / 14)
 /* Bytes span this many standard deviations to each side. */
 #define DEVIATIONS 4.f
 
@@ -268,13 +267,11 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   rc_tone tone;
   rc_level finest;
   rc_sampler *sampler;
-  int longest = filled->width > filled->height ? filled->width : filled->height;
   if (!e.kernels)
     return rc_fail(context, RECEDE_ARGUMENT, "This machine has no kernel %d.",
                    context->host.kernel);
   RC_TRY(rc_stage(context, "tone", .05, .07));
-  RC_TRY(rc_tone_new(context, filled, &problem->flags, TONE_SIGMA_OF_LONGEST * (float)longest,
-                     params->engine_tone, &tone));
+  rc_tone_fit(filled, &problem->flags, params->engine_tone, &tone);
   RC_TRY(rc_tone_apply(context, &tone, &problem->flags, RC_KNOWN, -1, filled));
   RC_TRY(rc_stage(context, "pyramid", .07, .1));
   e.gain = byte_gain(filled, &problem->flags);
