@@ -258,6 +258,30 @@ static void count_magnified(rc_context *context, const rc_level *level) {
     rc_warn(context, "%.0f px found no source and got the smooth tone alone.", missing);
 }
 
+/* The guide itself, for the ablation: what the averaging of votes alone would give. */
+static void take_guide(const engine *e, const rc_level *level, rc_image *residual) {
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      if (!rc_level_is_target(level, x, y)) continue;
+      uint32_t pixel = level->pixels[(size_t)y * (size_t)level->width + (size_t)x];
+      for (int k = 0; k < residual->channels; k++)
+        rc_pixel(residual, x, y)[k] = ((float)(pixel >> 8 * k & 255) - 128.f) / e->gain;
+    }
+}
+
+static recede_status compose(rc_context *context, const engine *e, const rc_level *finest,
+                             rc_image *residual) {
+  rc_sampler *sampler;
+  if (!e->params->engine_composition) {
+    take_guide(e, finest, residual);
+    return RECEDE_OK;
+  }
+  RC_TRY(RC_NEW(context, 1, &sampler));
+  rc_sampler_init(sampler, !e->params->engine_spline);
+  return rc_compose(context, finest, sampler, e->images, e->level_count, e->params->engine_join,
+                    residual);
+}
+
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                             const recede_params *params, rc_image *filled) {
   engine e = {.params = params,
@@ -266,7 +290,6 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   bool raised;
   rc_tone tone;
   rc_level finest;
-  rc_sampler *sampler;
   if (!e.kernels)
     return rc_fail(context, RECEDE_ARGUMENT, "This machine has no kernel %d.",
                    context->host.kernel);
@@ -281,10 +304,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   context->report.surface = raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;
   RC_TRY(search_levels(context, &e, &finest));
   RC_TRY(rc_stage(context, "composition", .8, .93));
-  RC_TRY(RC_NEW(context, 1, &sampler));
-  rc_sampler_init(sampler, !params->engine_spline);
-  RC_TRY(
-      rc_compose(context, &finest, sampler, e.images, e.level_count, params->engine_join, filled));
+  RC_TRY(compose(context, &e, &finest, filled));
   RC_TRY(rc_stage(context, "detail", .93, .97));
   if (params->engine_detail) RC_TRY(rc_match_detail(context, &finest, filled));
   count_magnified(context, &finest);
