@@ -15,6 +15,9 @@
 #define ENOUGH_SOURCE 2.0
 #define LEAST_SOURCE_PIXELS 64
 #define WIDEN_BY 1.3f
+/* Each single depth needs at least these; more would widen ordinary holes at the coarsest level,
+ * where a row of the picture has few pixels. */
+#define LEAST_REACHED 8
 #define REACH_BY 1.05f
 #define WIDEST 8.f
 
@@ -174,7 +177,7 @@ static void reach_source(const rc_level *level, float w, float *low, float *high
   int begin, end;
   for (;;) {
     bins_between(level, w * *low * REACH_BY, w * *high / REACH_BY, &begin, &end);
-    if (end - begin >= LEAST_SOURCE_PIXELS || *high > WIDEST) return;
+    if (end - begin >= LEAST_REACHED || *high > WIDEST) return;
     *low /= REACH_BY, *high *= REACH_BY;
   }
 }
