@@ -9,7 +9,7 @@
 
 /* Part of the variance that a trend must explain: below, sources of the right brightness are found
  * all the same, and a trend that the texture only feigns (near stones, far stones) does harm. */
-#define LEAST_EXPLAINED .6
+#define LEAST_EXPLAINED .75
 /* Enough for six decimals of a trend. */
 #define MOST_SAMPLES 400000
 
