@@ -1,5 +1,5 @@
-/* A smooth base (a wide Gaussian) was tried first: it takes planks', crests' and ripples' own tone
- * away, and what lies beyond the source bleeds into it; photos lost 15 points by it. */
+/* A wide Gaussian was tried first: it takes planks', crests' and ripples' own tone away. A linear
+ * trend leaves a dark middle where a photo is brightest in its own middle. */
 #include "image/tone.h"
 
 #include <math.h>
@@ -7,28 +7,39 @@
 
 #include "base/parallel.h"
 
-/* Part of the variance that a trend must explain: below, sources of the right brightness are found
- * all the same, and a trend that the texture only feigns (near stones, far stones) does harm. */
-#define LEAST_EXPLAINED .75
+/* Part of the variance that a trend must explain: below, it is lost in the texture. */
+#define LEAST_EXPLAINED .3
 /* Enough for six decimals of a trend. */
 #define MOST_SAMPLES 400000
+#define TERMS RC_TONE_TERMS
 
-/* Sums over the sources, about the picture's middle. */
+static int within(int v, int low, int end) { return v < low ? low : v >= end ? end - 1 : v; }
+
+static void basis(const rc_tone *tone, int px, int py, double terms[TERMS]) {
+  double x = (px - tone->middle_x) / tone->half_width,
+         y = (py - tone->middle_y) / tone->half_height;
+  terms[0] = 1, terms[1] = x, terms[2] = y;
+  terms[3] = x * x, terms[4] = x * y, terms[5] = y * y;
+}
+
+/* The normal equations: the sources' terms with each other, and with each channel's values. */
 typedef struct sums {
-  double n, x, y, xx, xy, yy, v[3], vv[3], xv[3], yv[3];
+  double product[TERMS][TERMS], value[3][TERMS], square;
 } sums;
 
-static void add(sums *s, double x, double y, const float *pixel, int channels) {
-  s->n++, s->x += x, s->y += y, s->xx += x * x, s->xy += x * y, s->yy += y * y;
+static void add(sums *s, const double terms[TERMS], const float *pixel, int channels) {
+  for (int i = 0; i < TERMS; i++)
+    for (int j = 0; j <= i; j++) s->product[i][j] += terms[i] * terms[j];
   for (int k = 0; k < channels; k++) {
-    double v = pixel[k];
-    s->v[k] += v, s->vv[k] += v * v, s->xv[k] += x * v, s->yv[k] += y * v;
+    s->square += (double)pixel[k] * pixel[k];
+    for (int i = 0; i < TERMS; i++) s->value[k][i] += terms[i] * pixel[k];
   }
 }
 
-static void gather(const rc_image *image, const rc_mask *flags, sums *s, rc_box *box) {
-  double area = (double)image->width * image->height;
+static void gather(const rc_image *image, const rc_mask *flags, rc_tone *tone, sums *s) {
+  double area = (double)image->width * image->height, terms[TERMS];
   int step = area > MOST_SAMPLES ? (int)ceil(sqrt(area / MOST_SAMPLES)) : 1;
+  rc_box *box = &tone->box;
   *box = (rc_box){image->width, image->height, 0, 0};
   for (int y = 0; y < image->height; y += step)
     for (int x = 0; x < image->width; x += step) {
@@ -37,42 +48,64 @@ static void gather(const rc_image *image, const rc_mask *flags, sums *s, rc_box 
       if (x >= box->x1) box->x1 = x + 1;
       if (y < box->y0) box->y0 = y;
       box->y1 = y + 1;
-      add(s, x - image->width / 2., y - image->height / 2., rc_pixel(image, x, y), image->channels);
+      basis(tone, x, y, terms);
+      add(s, terms, rc_pixel(image, x, y), image->channels);
     }
 }
 
-/* Covariances, and from them each channel's slopes. Returns the part of the variance explained. */
-static double solve(const sums *s, rc_tone *tone) {
-  double xx = s->xx - s->x * s->x / s->n, yy = s->yy - s->y * s->y / s->n;
-  double xy = s->xy - s->x * s->y / s->n, det = xx * yy - xy * xy;
-  double explained = 0, total = 0;
-  if (!(det > 1e-6 * xx * yy)) return 0;
-  for (int k = 0; k < tone->channels; k++) {
-    double xv = s->xv[k] - s->x * s->v[k] / s->n, yv = s->yv[k] - s->y * s->v[k] / s->n;
-    tone->slope_x[k] = (xv * yy - yv * xy) / det;
-    tone->slope_y[k] = (yv * xx - xv * xy) / det;
-    explained += tone->slope_x[k] * xv + tone->slope_y[k] * yv;
-    total += s->vv[k] - s->v[k] * s->v[k] / s->n;
+/* Cholesky's lower triangle in place; false when the sources do not determine the trend. */
+static bool factor(double m[TERMS][TERMS]) {
+  double most = m[0][0];
+  for (int i = 0; i < TERMS; i++)
+    for (int j = 0; j <= i; j++) {
+      double v = m[i][j];
+      for (int k = 0; k < j; k++) v -= m[i][k] * m[j][k];
+      if (i == j && !(v > 1e-6 * most)) return false;
+      m[i][j] = i == j ? sqrt(v) : v / m[j][j];
+    }
+  return true;
+}
+
+static void substitute(double m[TERMS][TERMS], const double value[TERMS], double terms[TERMS]) {
+  for (int i = 0; i < TERMS; i++) {
+    double v = value[i];
+    for (int k = 0; k < i; k++) v -= m[i][k] * terms[k];
+    terms[i] = v / m[i][i];
   }
-  return total > 0 ? explained / total : 0;
+  for (int i = TERMS - 1; i >= 0; i--) {
+    double v = terms[i];
+    for (int k = i + 1; k < TERMS; k++) v -= m[k][i] * terms[k];
+    terms[i] = v / m[i][i];
+  }
+}
+
+/* Part of the variance about the mean that the terms explain. */
+static double explained(const rc_tone *tone, const sums *s, double count) {
+  double fitted = 0, mean = 0;
+  for (int k = 0; k < tone->channels; k++) {
+    mean += s->value[k][0] * s->value[k][0] / count;
+    for (int i = 0; i < TERMS; i++) fitted += tone->terms[k][i] * s->value[k][i];
+  }
+  return s->square > mean ? (fitted - mean) / (s->square - mean) : 0;
 }
 
 void rc_tone_fit(const rc_image *image, const rc_mask *flags, bool drift, rc_tone *tone) {
-  sums s = {0};
+  sums s;
+  memset(&s, 0, sizeof s);
   memset(tone, 0, sizeof *tone);
   tone->channels = image->channels;
-  gather(image, flags, &s, &tone->box);
-  if (!(s.n > 0)) return;
-  if (!drift || solve(&s, tone) < LEAST_EXPLAINED) {
-    memset(tone->slope_x, 0, sizeof tone->slope_x);
-    memset(tone->slope_y, 0, sizeof tone->slope_y);
+  tone->middle_x = (image->width - 1) / 2., tone->middle_y = (image->height - 1) / 2.;
+  tone->half_width = image->width / 2., tone->half_height = image->height / 2.;
+  gather(image, flags, tone, &s);
+  double count = s.product[0][0];
+  if (!(count > 0)) return;
+  if (drift && factor(s.product)) {
+    for (int k = 0; k < tone->channels; k++) substitute(s.product, s.value[k], tone->terms[k]);
+    if (explained(tone, &s, count) >= LEAST_EXPLAINED) return;
   }
-  double x = s.x / s.n + image->width / 2., y = s.y / s.n + image->height / 2.;
-  for (int k = 0; k < tone->channels; k++)
-    tone->at[k] = s.v[k] / s.n - tone->slope_x[k] * x - tone->slope_y[k] * y;
+  memset(tone->terms, 0, sizeof tone->terms);
+  for (int k = 0; k < tone->channels; k++) tone->terms[k][0] = s.value[k][0] / count;
 }
-
-static int within(int v, int low, int end) { return v < low ? low : v >= end ? end - 1 : v; }
 
 typedef struct application {
   const rc_tone *tone;
@@ -85,13 +118,17 @@ typedef struct application {
 static void apply_row(void *user, int y, int thread) {
   const application *a = user;
   const rc_tone *tone = a->tone;
+  double terms[TERMS];
   (void)thread;
   for (int x = 0; x < a->image->width; x++) {
     if (!(*rc_flag(a->flags, x, y) & a->flag)) continue;
-    double tx = within(x, tone->box.x0, tone->box.x1), ty = within(y, tone->box.y0, tone->box.y1);
-    for (int k = 0; k < tone->channels; k++)
-      rc_pixel(a->image, x, y)[k] +=
-          a->sign * (float)(tone->at[k] + tone->slope_x[k] * tx + tone->slope_y[k] * ty);
+    basis(tone, within(x, tone->box.x0, tone->box.x1), within(y, tone->box.y0, tone->box.y1),
+          terms);
+    for (int k = 0; k < tone->channels; k++) {
+      double value = 0;
+      for (int i = 0; i < TERMS; i++) value += tone->terms[k][i] * terms[i];
+      rc_pixel(a->image, x, y)[k] += a->sign * (float)value;
+    }
   }
 }
 

@@ -5,11 +5,14 @@
 
 #include "image/image.h"
 
-/* value = at + slope_x * x + slope_y * y, x and y held within the box of the sources: a trend says
- * nothing about what lies far outside. */
+#define RC_TONE_TERMS 6 /* 1, x, y, x^2, x y, y^2 */
+
+/* A quadratic in x and y, both scaled to -1..1 over the picture and held within the box of the
+ * sources: a trend says nothing about what lies outside. */
 typedef struct rc_tone {
-  double at[3], slope_x[3], slope_y[3];
+  double terms[3][RC_TONE_TERMS];
   rc_box box;
+  double middle_x, middle_y, half_width, half_height;
   int channels;
 } rc_tone;
 
