@@ -1,6 +1,7 @@
 #include "command.h"
 
 #include <errno.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -73,8 +74,15 @@ void command_progress_clear(void) {
 
 static recede_job *volatile running;
 static volatile sig_atomic_t received;
+static pthread_t main_thread;
 
+/* The libraries' threads take signals too; the main thread blocks them while it names a temporary,
+ * so it alone may act on one. */
 static void on_signal(int number) {
+  if (!pthread_equal(pthread_self(), main_thread)) {
+    pthread_kill(main_thread, number);
+    return;
+  }
   recede_job *job = running;
   if (job && !received) {
     received = number;
@@ -88,6 +96,7 @@ static void on_signal(int number) {
 void command_signals_init(void) {
   struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
   static const int ending[] = {SIGINT, SIGTERM, SIGHUP};
+  main_thread = pthread_self();
   for (size_t i = 0; i < sizeof ending / sizeof *ending; i++) {
     struct sigaction old;
     /* nohup's ignoring is respected. */

@@ -24,6 +24,16 @@ IMAGE = {"2": "(define i (vector-ref (cadr (gimp-image-list)) 0))",
 SELECT = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE {} {} {} {})"
 
 
+def receive(link, count):
+    """Exactly so many bytes: MSG_WAITALL does not wait on a socket with a time limit."""
+    data = b""
+    while len(data) < count:
+        part = link.recv(count - len(data))
+        assert part, f"the server hung up after {data!r}"
+        data += part
+    return data
+
+
 class Server:
     """Script-Fu's server in the GIMP under test."""
 
@@ -44,8 +54,8 @@ class Server:
         with wait_for(connect, 30) as link:
             data = script.encode()
             link.sendall(b"G" + len(data).to_bytes(2, "big") + data)
-            head = link.recv(4, socket.MSG_WAITALL)
-            text = link.recv(int.from_bytes(head[2:], "big"), socket.MSG_WAITALL).decode()
+            head = receive(link, 4)
+            text = receive(link, int.from_bytes(head[2:], "big")).decode()
         return head[1] == 0, text
 
     def save(self, path):
