@@ -4,64 +4,21 @@
 windowed.sh dialog.py HOST PLUGIN PICTURE ARTEFACTS: screenshots are kept in ARTEFACTS.
 """
 import math
-import socket
 import sys
 import time
 from pathlib import Path
 
 import cv2
 import numpy as np
-import xcf
 from host import PRELUDE, Host, Tap
+from server import IMAGE, Server
 from window import Window, plain, wait_for, walk
 
 FOV, WIDTH, HEIGHT = 50, 960, 540
 MARGIN = .07  # plugin/common/scene.c
 SELECTION = (330, 380, 300, 130)
 
-IMAGE = {"2": "(define i (vector-ref (cadr (gimp-image-list)) 0))",
-         "3": "(define i (vector-ref (car (gimp-get-images)) 0))"}
 SELECT = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE {} {} {} {})"
-
-
-def receive(link, count):
-    """Exactly so many bytes: MSG_WAITALL does not wait on a socket with a time limit."""
-    data = b""
-    while len(data) < count:
-        part = link.recv(count - len(data))
-        assert part, f"the server hung up after {data!r}"
-        data += part
-    return data
-
-
-class Server:
-    """Script-Fu's server in the GIMP under test."""
-
-    def __init__(self, host):
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            self.port = free.getsockname()[1]
-        log = host.folder / "server.log"
-        self.script = (
-            f'(plug-in-script-fu-server RUN-NONINTERACTIVE "127.0.0.1" {self.port} "{log}")'
-            if host.name == "2" else
-            f'(plug-in-script-fu-server #:run-mode RUN-NONINTERACTIVE #:ip "127.0.0.1"'
-            f' #:port {self.port} #:logfile "{log}")')
-
-    def run(self, script):
-        def connect():
-            return socket.create_connection(("127.0.0.1", self.port), 60)
-        with wait_for(connect, 30) as link:
-            data = script.encode()
-            link.sendall(b"G" + len(data).to_bytes(2, "big") + data)
-            head = receive(link, 4)
-            text = receive(link, int.from_bytes(head[2:], "big")).decode()
-        return head[1] == 0, text
-
-    def save(self, path):
-        good, text = self.run(f'(t-save i "{path}")')
-        assert good, text
-        return xcf.Image(path)
 
 
 class Dialog:
@@ -207,18 +164,6 @@ def check_cancel(dialog, host):
     dialog.choose("Copies within the plane")
 
 
-def undo(window, frame):
-    """Edit > Undo, as GIMP names it."""
-    edit = window.find(frame, ("menu",), "Edit")
-    window.press(edit)  # its items are brought up to date when it opens
-    item = wait_for(lambda: next((node for node in walk(edit) if (node.name or "").startswith(
-        ("Undo", "_Undo"))), None), 10)
-    window.screenshot("undo-menu")
-    name = item.name
-    window.press(item)
-    return name
-
-
 def check_fill_and_undo(dialog, window, frame, server, folder):
     before = server.save(folder / "before.xcf")
     dialog.press("OK")
@@ -234,7 +179,7 @@ def check_fill_and_undo(dialog, window, frame, server, folder):
                     "the selection changed and nothing else",
                     f"{changed[inside].mean()} {changed[~inside].sum()}")
     window.screenshot("filled")
-    name = undo(window, frame)
+    name = window.undo(frame)
     restored = wait_for(lambda: np.array_equal(
         server.save(folder / "undone.xcf").layers[0].bytes, old), 10)
     dialog.tap.case(restored, "one undo restores every byte", name)
@@ -257,9 +202,7 @@ def main():
         tap.case(frame is not None, "GIMP is up")
         ready, text = server.run(PRELUDE[name] + IMAGE[name] + SELECT.format(*SELECTION))
         tap.case(ready, "its server answers", text)
-        welcome = window.frame("Welcome", 2)  # GIMP 3 greets a new profile
-        if welcome:
-            window.press(window.button(welcome, "Close"))
+        window.dismiss_welcome()
         dialog = Dialog(window, tap)
         dialog.open(frame)
         dialog.says("confidence", seconds=30)  # the estimate that opening starts

@@ -9,14 +9,13 @@ import time
 from pathlib import Path
 
 import pyatspi
-from dialog import Dialog, Server, on_screen
+from dialog import Dialog, on_screen
 from host import PRELUDE, Host, Tap
+from server import IMAGE, Server
 from window import Window, wait_for
 
 BOX = (155, 345, 275, 185)  # the lane markings left of the middle
 HORIZON, GUESSED = 319, 162  # where it is in the photo; where the dialog puts it at first
-IMAGE = {"2": "(define i (vector-ref (cadr (gimp-image-list)) 0))",
-         "3": "(define i (vector-ref (car (gimp-get-images)) 0))"}
 
 
 def keep(window, folder, number, name):
@@ -36,9 +35,7 @@ def main():
         frame = window.frame("960x540", 60)
         server.run(PRELUDE[name] + IMAGE[name] + "(gimp-image-select-rectangle i "
                    f"CHANNEL-OP-REPLACE {BOX[0]} {BOX[1]} {BOX[2]} {BOX[3]})")
-        welcome = window.frame("Welcome", 2)
-        if welcome:
-            window.press(window.button(welcome, "Close"))
+        window.dismiss_welcome()
         time.sleep(1)
         start = time.monotonic()
         for menu in ("Filters", "Enhance"):

@@ -140,6 +140,22 @@ class Window:
                 return
             frame = item
 
+    def undo(self, frame):
+        """Edit > Undo, as GIMP names it."""
+        edit = self.find(frame, ("menu",), "Edit")
+        self.press(edit)  # its items are brought up to date when it opens
+        item = wait_for(lambda: next((node for node in walk(edit) if (node.name or "").startswith(
+            ("Undo", "_Undo"))), None), 10)
+        name = item.name
+        self.press(item)
+        return name
+
+    def dismiss_welcome(self):
+        """GIMP 3 greets a new profile."""
+        welcome = self.frame("Welcome", 2)
+        if welcome:
+            self.press(self.button(welcome, "Close"))
+
     def screenshot(self, name):
         path = self.artefacts / f"gimp{self.host.name}-{name}.png"
         subprocess.run(["import", "-window", "root", str(path)], check=False, timeout=20)
