@@ -2,11 +2,15 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 
 import harness
 from harness import check, hole, read, recede, texture, write
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "lib"))
+import icc  # noqa: E402 - found by then
 
 TAGS = {"Orientation#": 6, "XResolution": 240, "YResolution": 240, "ResolutionUnit": "inches",
         "Make": "Acme", "Model": "X", "ExposureTime": "1/60", "FNumber": 8, "ISO": 200,
@@ -18,30 +22,8 @@ KEPT = ["Orientation", "XResolution", "YResolution", "ResolutionUnit", "Make", "
 
 
 def profile(folder):
-    """A minimal sRGB-like profile, made here: header, three columns, curves, white, name."""
-    def fixed(*values):
-        return b"XYZ \0\0\0\0" + b"".join(int(round(v * 65536)).to_bytes(4, "big", signed=True)
-                                          for v in values)
-
-    curve = b"curv\0\0\0\0\0\0\0\1\x02\x33\0\0"
-    text = b"desc\0\0\0\0\0\0\0\x07recede\0" + bytes(11 + 67 + 5)
-    tags = [(b"desc", text[:len(text) // 4 * 4]), (b"cprt", b"text\0\0\0\0CC0\0"),
-            (b"wtpt", fixed(.9642, 1, .8249)), (b"rXYZ", fixed(.4361, .2225, .0139)),
-            (b"gXYZ", fixed(.3851, .7169, .0971)), (b"bXYZ", fixed(.1431, .0606, .7141)),
-            (b"rTRC", curve), (b"gTRC", curve), (b"bTRC", curve)]
-    offset = 128 + 4 + 12 * len(tags)
-    table, data = len(tags).to_bytes(4, "big"), b""
-    for name, content in tags:
-        table += name + (offset + len(data)).to_bytes(4, "big") + len(content).to_bytes(4, "big")
-        data += content
-    head = bytearray(128)
-    head[0:4] = (128 + len(table) + len(data)).to_bytes(4, "big")
-    head[8:12] = b"\x02\x10\0\0"
-    head[12:24] = b"mntrRGB XYZ "
-    head[36:40] = b"acsp"
-    head[68:80] = fixed(.9642, 1, .8249)[8:]
     path = folder / "recede.icc"
-    path.write_bytes(bytes(head) + table + data)
+    path.write_bytes(icc.rgb_profile())
     return path
 
 

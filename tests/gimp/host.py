@@ -28,12 +28,17 @@ PRELUDE = {
 (define (t-select-layer image layer) (gimp-image-set-active-layer image layer))
 (define (t-save image path)
   (gimp-file-save RUN-NONINTERACTIVE image (t-layer image) path path))
+(define t-save-png t-save)
 """,
     "3": """
 (define (t-load path) (car (gimp-file-load RUN-NONINTERACTIVE path)))
 (define (t-layer image) (vector-ref (car (gimp-image-get-selected-drawables image)) 0))
 (define (t-select-layer image layer) (gimp-image-set-selected-layers image (vector layer)))
 (define (t-save image path) (gimp-file-save RUN-NONINTERACTIVE image path -1))
+; Profiles are left out of what scripts export, unless asked for.
+(define (t-save-png image path)
+  (file-png-export #:run-mode RUN-NONINTERACTIVE #:image image #:file path
+                   #:include-color-profile TRUE))
 """,
 }
 SYSTEM_PLUGINS = {"2": "/usr/lib/gimp/2.0/plug-ins",
@@ -76,21 +81,21 @@ class Host:
             self.folder / "profile")
         return {**kept, "LC_ALL": "C.UTF-8", **more}
 
-    def command(self, script):
+    def command(self, script, fonts):
         path = self.folder / "script.scm"
         path.write_text(PRELUDE[self.name] + "\n".join(script))
         load = f'(load "{path}")'
-        common = ["-g", str(self.gimprc), "-i", "-d", "-f", "-s"]
+        common = ["-g", str(self.gimprc), "-i", "-d", "-s", *([] if fonts else ["-f"])]
         if self.name == "2":
             return ["gimp-console-2.10", *common, "-b", load, "-b", "(gimp-quit 1)"]
         return ["gimp-console-3", *common, "--quit",
                 "--batch-interpreter=plug-in-script-fu-eval", "-b", load]
 
-    def run(self, *script, seconds=240, **environment):
+    def run(self, *script, seconds=240, fonts=False, **environment):
         """What GIMP wrote. `done` tells whether the script came to its end."""
         done = subprocess.run(
             ["timeout", "-k", "5", str(seconds),
-             *self.command([*script, '(gimp-message "t-done")'])],
+             *self.command([*script, '(gimp-message "t-done")'], fonts)],
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
             env=self.environment(**environment), cwd=self.folder, check=False)
         output = done.stdout.decode(errors="replace")
