@@ -23,10 +23,11 @@ import numpy as np
 PROJECT = Path(__file__).resolve().parents[2]
 CACHE = Path(os.environ.get('XDG_CACHE_HOME') or Path.home() / '.cache') / 'recede' / 'evaluate'
 CASES = 30  # of make_cases.py
+SIZE = 512  # px, of a rendered case
 MAKE_ONE = f'''
 import sys, types, make_cases
 case = list(make_cases.cases({CASES}))[int(sys.argv[1])]
-make_cases.one(types.SimpleNamespace(size=512, out=sys.argv[2]), case)
+make_cases.one(types.SimpleNamespace(size={SIZE}, out=sys.argv[2]), case)
 '''
 
 
@@ -106,8 +107,17 @@ def working_folder():
         copy.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=copy.parent) as temporary:
             copy_data(folder, Path(temporary) / 'evaluate')
-            (Path(temporary) / 'evaluate').rename(copy)
+            put(Path(temporary) / 'evaluate', copy)
     return copy
+
+
+def put(made, place):
+    """Moves a folder to its place, unless another process was first: theirs is the same."""
+    try:
+        made.rename(place)
+    except OSError:
+        if not place.exists():
+            raise
 
 
 def copy_data(folder, copy):
@@ -120,6 +130,12 @@ def copy_data(folder, copy):
                    stdout=subprocess.DEVNULL)
 
 
+def case_name(case):
+    """As make_cases.one() names its folder."""
+    index, texture, slant, tilt, kind = case
+    return f'{index:03d}_{texture}_s{slant}_t{tilt}_{kind}'
+
+
 def rendered_folders(root, wanted):
     """Folders of the rendered cases, those that are wanted; made where they are not there yet."""
     if root == data_folder():
@@ -129,23 +145,48 @@ def rendered_folders(root, wanted):
     import make_cases
     folders = []
     for case in make_cases.cases(CASES):
-        index, texture, slant, tilt, kind = case
-        path = root / 'cases' / f'{index:03d}_{texture}_s{slant}_t{tilt}_{kind}'
+        path = root / 'cases' / case_name(case)
         if not path.name.startswith(wanted):
             continue
         if not path.exists():
             with tempfile.TemporaryDirectory(dir=root) as temporary:
-                subprocess.run([sys.executable, '-c', MAKE_ONE, str(index), temporary], cwd=root,
+                subprocess.run([sys.executable, '-c', MAKE_ONE, str(case[0]), temporary], cwd=root,
                                check=True, stdout=subprocess.DEVNULL)
-                (Path(temporary) / path.name).rename(path)
+                put(Path(temporary) / path.name, path)
         folders.append(path)
     return folders
 
 
+def angles_of(meta):
+    """A camera of make_cases.py as recede's options."""
+    return [f'--{option}={meta[key]}' for option, key in
+            (('slant', 'slant'), ('tilt', 'tilt'), ('fov', 'fov_deg'))]
+
+
+def scale_maps():
+    """(case's name, recede's options, {'across', 'along'}: px per texel) of every rendered case.
+
+    A case that is not rendered yet has no scale.npz: rendering takes seconds, so its maps are made
+    here by what would write them, make_cases.py's camera.
+    """
+    root = working_folder()
+    sys.path.insert(0, str(root))
+    import make_cases
+    for case in make_cases.cases(CASES):
+        folder = root / 'cases' / case_name(case)
+        if folder.exists():
+            maps = np.load(folder / 'scale.npz')
+            yield folder.name, angles_of(json.loads((folder / 'meta.json').read_text())), maps
+        else:
+            _, _, slant, tilt, _ = case
+            camera = make_cases.Plane(SIZE, SIZE, slant, tilt, make_cases.FOVS[slant])
+            across, along = (values.astype(np.float32) for values in camera.scales())
+            yield folder.name, angles_of(camera.meta()), {'across': across, 'along': along}
+
+
 def synthetic_case(folder):
     meta = json.loads((folder / 'meta.json').read_text())
-    angles = [f'--{option}={meta[key]}' for option, key in
-              (('slant', 'slant'), ('tilt', 'tilt'), ('fov', 'fov_deg'))]
+    angles = angles_of(meta)
     line = np.linalg.inv(np.array(meta['H_texture_to_image'], float))[2]
     centre = np.array([(meta['width'] - 1) / 2, (meta['height'] - 1) / 2, 1])
     return Case(folder.name, folder, float(meta['slant']), line / (line @ centre), angles)
