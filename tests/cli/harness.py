@@ -1,10 +1,12 @@
 """What the tests of the command share: running it, pictures made for it, and TAP.
 
 A test file defines functions named test_*; its last line is `harness.main(globals())`. The first
-argument is the command. A test fails by an exception, mostly from check().
+argument is the command, the second, where a test needs it, many.c. A test fails by an exception,
+mostly from check().
 """
 import json
 import os
+import select
 import shutil
 import signal
 import subprocess
@@ -54,6 +56,39 @@ def recede(*arguments, code=0, environment=None, prepare=None, limit_s=TIME_LIMI
     if code is not None:
         check(done.returncode == code, command, "ended with", done.returncode, "not", code, text)
     return done
+
+
+class Many:
+    """Runs the command as recede() does, but in children of one process that has its libraries
+    loaded already: a tenth of the time."""
+
+    def __init__(self, folder, prepare=None, environment=None):
+        self.said = folder / "said"
+        self.process = subprocess.Popen([os.path.abspath(sys.argv[2])], stdin=subprocess.PIPE,
+                                        stdout=subprocess.PIPE, preexec_fn=prepare,
+                                        start_new_session=True,
+                                        env={**os.environ, **(environment or {})})
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.stdin.close()
+        self.process.wait(TIME_LIMIT_S)
+        self.process.stdout.close()
+
+    def run(self, *arguments):
+        """(exit code, what it said); for a run that a signal ended, minus its number."""
+        words = [self.said, *arguments]
+        self.process.stdin.write(b"".join(os.fsencode(str(word)) + b"\0" for word in [*words, ""]))
+        self.process.stdin.flush()
+        ready, _, _ = select.select([self.process.stdout], [], [], TIME_LIMIT_S)
+        if not ready:
+            os.killpg(self.process.pid, signal.SIGKILL)
+            raise Failure(f"took more than {TIME_LIMIT_S} s: {arguments}")
+        code, text = int(self.process.stdout.readline()), self.said.read_text(errors="replace")
+        check("Sanitizer" not in text and "runtime error" not in text, arguments, text)
+        return code, text
 
 
 def report_of(*arguments, **options):
