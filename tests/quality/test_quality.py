@@ -19,6 +19,7 @@ from evaluation import data_folder, load_cases  # noqa: E402
 from methods import run  # noqa: E402
 from plane_picture import View, draw, hole  # noqa: E402
 from score import score_all  # noqa: E402
+from tap import Tap  # noqa: E402
 
 DRAWN = ('brick_regular', 'sk_gravel')
 VIEW = View(400, 300, 55, 0)
@@ -28,26 +29,6 @@ SLICES = 3           # of the hole, from near to far
 # Steep ones: bricks, roof tiles, gravel. Few, because a test may not take minutes; all of them are
 # scored by `./dev bench quality`.
 CASES = ['013', '024', '029']
-
-
-class Tap:
-    def __init__(self):
-        self.count = self.failed = 0
-
-    def check(self, good, name, said=''):
-        self.count += 1
-        self.failed += not good
-        print(f'{"ok" if good else "not ok"} {self.count} - {name}', flush=True)
-        if said:
-            print(f'# {said}', flush=True)
-
-    def skip(self, name, reason):
-        self.count += 1
-        print(f'ok {self.count} - {name} # SKIP {reason}', flush=True)
-
-    def finish(self):
-        print(f'1..{self.count}')
-        return 1 if self.failed else 0
 
 
 def detail_octave(picture, region):
@@ -110,20 +91,13 @@ def drawn_planes(tap, binary, folder):
 
 
 def evaluation_cases(tap, binary, folder):
-    scores = score_all(load_cases(CASES), ['plane', 'paper', 'kwatra'], binary, ['--seed=1'],
-                       folder, jobs=os.cpu_count())
+    scores = score_all(load_cases(CASES), ['plane'], binary, ['--seed=1'], folder,
+                       jobs=os.cpu_count())
     for name, found in scores.items():
-        errors = [entry['error'] for entry in found.values() if 'error' in entry]
-        tap.check(not errors, f'{name}: every method gives a result', ' '.join(errors))
         plane = found['plane']
         tap.check(plane['score'] >= 80, f'{name}: the plane engine scores at least 80',
-                  f'{plane["score"]} {plane["terms"]}')
+                  f'{plane["score"]} {plane.get("error") or plane["terms"]}')
         tap.check(plane.get('changed_outside') == 0, f'{name}: nothing changes outside the hole')
-    # A single case says little about the methods that average: another seed, another answer.
-    paper, kwatra = (np.mean([found[method]['terms'].get('scale', 9) for found in scores.values()])
-                     for method in ('paper', 'kwatra'))
-    tap.check(paper < .7 * kwatra, 'cases: the paper keeps the scale better than its baseline',
-              f'octaves of error: paper {paper:.2f}, kwatra {kwatra:.2f}')
 
 
 def main():

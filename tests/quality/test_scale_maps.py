@@ -1,5 +1,5 @@
-"""recede scale-map against the scale maps of the evaluation's cases, which another program made from
-its own camera: scale.npz, px per texel across and along the tilt."""
+"""recede scale-map against the scale maps of the evaluation's cases, which another program made
+from its own camera: scale.npz, px per texel across and along the tilt."""
 import os
 import sys
 from pathlib import Path
