@@ -165,8 +165,10 @@ recede_status rc_match_detail(rc_context *context, const rc_level *level, rc_ima
     RC_TRY(smooth(context, &b, layers[n], scratch, layers[n + 1]));
     measure(&b, level, level->room, layers[n], layers[n + 1], &e);
     gains_of(&e, level->ranges.count, gains[n]);
+    RC_TRY(rc_poll(context));
   }
   rc_distance_inside(level->flags, RC_TARGET, level->width, level->height, false, depth);
+  RC_TRY(rc_poll(context));
   apply(&b, level, depth, gains, layers, residual);
   rc_release(context, mark);
   return RECEDE_OK;

@@ -81,8 +81,9 @@ static void set_variance(rc_level *level) {
   level->variance = fmaxf((float)(total / 3), 1.f);
 }
 
-static void for_each_source(rc_level *level, int32_t *fill) {
-  for (int y = 0; y < level->height; y++)
+static recede_status for_each_source(rc_context *context, rc_level *level, int32_t *fill) {
+  for (int y = 0; y < level->height; y++) {
+    RC_TRY(rc_poll(context));
     for (int x = 0; x < level->width; x++) {
       size_t i = (size_t)y * (size_t)level->width + (size_t)x;
       if (level->room[i] <= RC_PATCH_RADIUS + 1) continue;
@@ -95,6 +96,8 @@ static void for_each_source(rc_level *level, int32_t *fill) {
       else
         fill[bin]++;
     }
+  }
+  return RECEDE_OK;
 }
 
 /* A counting sort of the sources by log2 w. */
@@ -112,15 +115,14 @@ static recede_status sort_sources(rc_context *context, rc_level *level) {
   level->bins = (int)(rc_log2(most / least) * RC_BINS_PER_OCTAVE) + 1;
   if (level->bins > RC_MAX_BINS) level->bins = RC_MAX_BINS;
   level->order = NULL;
-  for_each_source(level, count);
+  RC_TRY(for_each_source(context, level, count));
   level->first[0] = 0;
   for (int b = 0; b < level->bins; b++) {
     level->first[b + 1] = level->first[b] + count[b];
     count[b] = level->first[b];
   }
   RC_TRY(RC_NEW(context, level->first[level->bins] + 1, &level->order));
-  for_each_source(level, count);
-  return RECEDE_OK;
+  return for_each_source(context, level, count);
 }
 
 /* Sources with w in low..high: a run of level->order. */
@@ -230,13 +232,18 @@ recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_
   RC_TRY(RC_NEW(context, count, &level->pixels));
   RC_TRY(RC_NEW(context, count, &level->weight));
   RC_TRY(RC_NEW(context, count, &level->room));
+  /* Each takes a tenth of a second or two in a large picture. */
   pack(image, gain, level->pixels);
+  RC_TRY(rc_poll(context));
   rc_distance_inside(level->flags, RC_SOURCE, level->width, level->height, true, level->room);
+  RC_TRY(rc_poll(context));
   set_weights(level, gamma);
+  RC_TRY(rc_poll(context));
   find_box(level);
   for (int i = 0; i < RC_PATCH_LANES; i++)
     level->lane_offset[i] = rc_lane_y[i] * level->width + rc_lane_x[i];
   set_variance(level);
+  RC_TRY(rc_poll(context));
   size_t box = (size_t)level->box_w * (size_t)level->box_h;
   RC_TRY(RC_NEW(context, box, &level->field));
   RC_TRY(RC_NEW(context, box, &level->cost));

@@ -222,7 +222,7 @@ static void on_show(GtkToggleButton *button, gpointer user) {
   if (panel->scene.show == RP_SHOW_SCALE)
     say(panel, _("Blue: the texture gets smaller; orange: larger than in the selection; red: it "
                  "would have to be magnified; grey: beyond the horizon."));
-  else if (!panel->scene.draft)
+  else if (!panel->scene.draft.pixels)
     renew_draft(panel);
   gtk_widget_queue_draw(panel->area);
 }

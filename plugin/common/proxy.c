@@ -76,24 +76,43 @@ gboolean rp_proxy_new(const rp_picture *picture, int longest, rp_proxy *proxy) {
   gsize pixels = (gsize)proxy->width * (gsize)proxy->height;
   proxy->rgba = g_try_malloc(pixels * 4);
   proxy->mask = g_try_malloc(pixels);
+  proxy->ends = g_try_new(int, 2 * (gsize)proxy->height);
   proxy->source = NULL;
-  if (!proxy->rgba || !proxy->mask) return rp_proxy_clear(proxy), FALSE;
+  if (!proxy->rgba || !proxy->mask || !proxy->ends) return rp_proxy_clear(proxy), FALSE;
   shrink_picture(picture, proxy);
   shrink_mask(&picture->mask.view, proxy, 0, proxy->mask);
+  rp_proxy_find_ends(proxy);
   return TRUE;
+}
+
+void rp_proxy_find_ends(rp_proxy *proxy) {
+  for (int y = 0; y < proxy->height; y++) {
+    int *ends = proxy->ends + 2 * y;
+    ends[0] = ends[1] = -1;
+    for (int x = 0; x < proxy->width; x++) {
+      int at = y * proxy->width + x;
+      if (proxy->mask[at] || (proxy->source && !proxy->source[at]) || !proxy->rgba[4 * at + 3])
+        continue;
+      if (ends[0] < 0) ends[0] = x;
+      ends[1] = x;
+    }
+  }
 }
 
 void rp_proxy_set_source(rp_proxy *proxy, const rp_picture *picture) {
   g_clear_pointer(&proxy->source, g_free);
-  if (!picture->source.view.data) return;
-  proxy->source = g_malloc((gsize)proxy->width * (gsize)proxy->height);
-  shrink_mask(&picture->source.view, proxy, .5f, proxy->source);
+  if (picture->source.view.data) {
+    proxy->source = g_malloc((gsize)proxy->width * (gsize)proxy->height);
+    shrink_mask(&picture->source.view, proxy, .5f, proxy->source);
+  }
+  rp_proxy_find_ends(proxy);
 }
 
 void rp_proxy_clear(rp_proxy *proxy) {
   g_clear_pointer(&proxy->rgba, g_free);
   g_clear_pointer(&proxy->mask, g_free);
   g_clear_pointer(&proxy->source, g_free);
+  g_clear_pointer(&proxy->ends, g_free);
 }
 
 void rp_proxy_centre(const rp_proxy *proxy, double *x, double *y) {

@@ -7,22 +7,27 @@
 #include "grid.h"
 #include "surface.h"
 
+static void clear_layer(rp_layer *layer) {
+  g_clear_pointer(&layer->pixels, cairo_surface_destroy);
+  g_clear_pointer(&layer->fitted, cairo_surface_destroy);
+}
+
 gboolean rp_scene_new(const rp_picture *picture, int longest, rp_scene *scene) {
   memset(scene, 0, sizeof *scene);
   if (!rp_proxy_new(picture, longest, &scene->proxy)) return FALSE;
   rp_proxy *proxy = &scene->proxy;
   rp_proxy_centre(proxy, &scene->centre_x, &scene->centre_y);
-  scene->photo = rp_surface_of_pixels(proxy->rgba, proxy->width, proxy->height);
-  scene->outline = rp_surface_of_outline(proxy);
+  scene->photo.pixels = rp_surface_of_pixels(proxy->rgba, proxy->width, proxy->height);
+  scene->outline.pixels = rp_surface_of_outline(proxy);
   scene->shade_is_old = TRUE;
   return rp_scene_set_angles(scene, 0, 0, 50);
 }
 
 void rp_scene_clear(rp_scene *scene) {
-  g_clear_pointer(&scene->photo, cairo_surface_destroy);
-  g_clear_pointer(&scene->outline, cairo_surface_destroy);
+  clear_layer(&scene->photo);
+  clear_layer(&scene->outline);
+  clear_layer(&scene->draft);
   g_clear_pointer(&scene->shade, cairo_surface_destroy);
-  g_clear_pointer(&scene->draft, cairo_surface_destroy);
   rp_proxy_clear(&scene->proxy);
 }
 
@@ -41,6 +46,7 @@ void rp_scene_make_exemplar(rp_scene *scene) {
   g_free(proxy->source);
   proxy->source = proxy->mask;
   proxy->mask = g_malloc0((gsize)proxy->width * (gsize)proxy->height);
+  rp_proxy_find_ends(proxy);
   scene->shade_is_old = TRUE;
 }
 
@@ -68,8 +74,9 @@ void rp_scene_set_source(rp_scene *scene, const rp_picture *picture) {
 }
 
 void rp_scene_set_draft(rp_scene *scene, const guchar *pixels) {
-  g_clear_pointer(&scene->draft, cairo_surface_destroy);
-  if (pixels) scene->draft = rp_surface_of_pixels(pixels, scene->proxy.width, scene->proxy.height);
+  clear_layer(&scene->draft);
+  if (!pixels) return;
+  scene->draft.pixels = rp_surface_of_pixels(pixels, scene->proxy.width, scene->proxy.height);
 }
 
 /* ---------------------------------------------------------------------------------- handles -- */
@@ -161,8 +168,9 @@ gboolean rp_scene_drag(const rp_scene *scene, rp_grab grab, const recede_plane *
 rp_fit rp_scene_fit(const rp_scene *scene, int width, int height) {
   double inner_width = width * (1 - 2 * MARGIN), inner_height = height * (1 - 2 * MARGIN);
   double zoom = fmin(inner_width / scene->proxy.width, inner_height / scene->proxy.height);
-  return (rp_fit){(width - zoom * scene->proxy.width) / 2,
-                  (height - zoom * scene->proxy.height) / 2, zoom};
+  /* Whole pixels, so that fitted layers are painted as they are. */
+  return (rp_fit){floor((width - zoom * scene->proxy.width) / 2),
+                  floor((height - zoom * scene->proxy.height) / 2), zoom};
 }
 
 static void refresh_shade(rp_scene *scene) {
@@ -175,9 +183,32 @@ static void refresh_shade(rp_scene *scene) {
   scene->shade_is_old = FALSE;
 }
 
-static void paint(cairo_t *cairo, cairo_surface_t *surface) {
-  if (!surface) return;
+static void paint_scaled(cairo_t *cairo, cairo_surface_t *surface, double zoom,
+                         cairo_filter_t filter) {
+  cairo_save(cairo);
+  cairo_scale(cairo, zoom, zoom);
   cairo_set_source_surface(cairo, surface, 0, 0);
+  cairo_pattern_set_filter(cairo_get_source(cairo), filter);
+  cairo_paint(cairo);
+  cairo_restore(cairo);
+}
+
+static void fit_layer(cairo_t *cairo, rp_layer *layer, double zoom) {
+  int width = (int)ceil(cairo_image_surface_get_width(layer->pixels) * zoom);
+  int height = (int)ceil(cairo_image_surface_get_height(layer->pixels) * zoom);
+  g_clear_pointer(&layer->fitted, cairo_surface_destroy);
+  layer->fitted = cairo_surface_create_similar(cairo_get_target(cairo), CAIRO_CONTENT_COLOR_ALPHA,
+                                               width, height);
+  layer->zoom = zoom;
+  cairo_t *on_fitted = cairo_create(layer->fitted);
+  paint_scaled(on_fitted, layer->pixels, zoom, CAIRO_FILTER_GOOD);
+  cairo_destroy(on_fitted);
+}
+
+static void paint_layer(cairo_t *cairo, rp_layer *layer, double zoom) {
+  if (!layer->pixels) return;
+  if (!layer->fitted || layer->zoom != zoom) fit_layer(cairo, layer, zoom);
+  cairo_set_source_surface(cairo, layer->fitted, 0, 0);
   cairo_paint(cairo);
 }
 
@@ -195,20 +226,24 @@ static void draw_handles(const rp_scene *scene, cairo_t *cairo, double zoom) {
   }
 }
 
+static void draw_plane(rp_scene *scene, cairo_t *cairo, double zoom) {
+  refresh_shade(scene);
+  if (scene->shade) paint_scaled(cairo, scene->shade, zoom, CAIRO_FILTER_BILINEAR);
+  cairo_save(cairo);
+  cairo_scale(cairo, zoom, zoom);
+  rp_grid_draw(&scene->plane, cairo, scene->centre_x, scene->centre_y, zoom,
+               scene->show == RP_SHOW_GRID);
+  draw_handles(scene, cairo, zoom);
+  cairo_restore(cairo);
+}
+
 void rp_scene_draw(rp_scene *scene, cairo_t *cairo, int width, int height) {
   rp_fit fit = rp_scene_fit(scene, width, height);
-  gboolean draft = scene->show == RP_SHOW_DRAFT && scene->draft;
+  gboolean draft = scene->show == RP_SHOW_DRAFT && scene->draft.pixels;
   cairo_set_source_rgb(cairo, .2, .2, .2);
   cairo_paint(cairo);
   cairo_translate(cairo, fit.x, fit.y);
-  cairo_scale(cairo, fit.zoom, fit.zoom);
-  paint(cairo, draft ? scene->draft : scene->photo);
-  if (scene->show != RP_SHOW_DRAFT) {
-    refresh_shade(scene);
-    paint(cairo, scene->shade);
-    rp_grid_draw(&scene->plane, cairo, scene->centre_x, scene->centre_y, fit.zoom,
-                 scene->show == RP_SHOW_GRID);
-    draw_handles(scene, cairo, fit.zoom);
-  }
-  if (!draft) paint(cairo, scene->outline);
+  paint_layer(cairo, draft ? &scene->draft : &scene->photo, fit.zoom);
+  if (scene->show != RP_SHOW_DRAFT) draw_plane(scene, cairo, fit.zoom);
+  if (!draft) paint_layer(cairo, &scene->outline, fit.zoom);
 }

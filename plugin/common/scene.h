@@ -19,12 +19,19 @@ typedef enum {
   RP_GRAB_RIGHT
 } rp_grab;
 
+/* What seldom changes, and its copy at the widget's size: scaling is what drawing costs most. */
+typedef struct {
+  cairo_surface_t *pixels, *fitted; /* NULL: not there yet */
+  double zoom;                      /* of fitted */
+} rp_layer;
+
 typedef struct {
   rp_proxy proxy;
   double centre_x, centre_y; /* of the hole: the grid lies around it */
   recede_plane plane;        /* of the proxy's image */
   rp_show show;
-  cairo_surface_t *photo, *outline, *shade, *draft; /* draft NULL: not there yet */
+  rp_layer photo, outline, draft;
+  cairo_surface_t *shade; /* NULL: nothing to shade */
   gboolean shade_is_old;
 } rp_scene;
 

@@ -62,46 +62,74 @@ cairo_surface_t *rp_surface_of_outline(const rp_proxy *proxy) {
   return finish(&c);
 }
 
-/* The nearest that may be copied: the largest w outside the mask. */
+/* The nearest that may be copied: the largest w outside the mask. w is linear in x, so that the
+ * largest of a row is at one of its ends. */
 static double largest_source_w(const rp_proxy *proxy, const recede_plane *plane) {
   double largest = 0;
-  for (int y = 0; y < proxy->height; y++)
-    for (int x = 0; x < proxy->width; x++) {
-      int at = y * proxy->width + x;
-      if (proxy->mask[at] || (proxy->source && !proxy->source[at]) || !proxy->rgba[4 * at + 3])
-        continue;
-      largest = fmax(largest, recede_plane_w(plane, x, y));
-    }
+  for (int y = 0; y < proxy->height; y++) {
+    const int *ends = proxy->ends + 2 * y;
+    if (ends[0] < 0) continue;
+    largest = fmax(largest, recede_plane_w(plane, ends[0], y));
+    largest = fmax(largest, recede_plane_w(plane, ends[1], y));
+  }
   return largest;
 }
 
-static guint32 shade_of(double scale) {
-  if (!(scale > 0)) return argb(.5, .5, .5, SHADE_ALPHA);
-  double octaves = fmax(-1, fmin(1, log2(scale) / 2));
-  double alpha = SHADE_ALPHA * sqrt(fabs(octaves));
-  return octaves < 0 ? argb(.1, .35, 1, alpha) : argb(1, .6, .05, alpha);
+/* Scales from 0 to LARGEST, beyond which the shade does not change, in steps no eye can tell. */
+#define LARGEST 4
+#define STEPS 256
+
+static void make_shades(guint32 shades[LARGEST * STEPS + 1]) {
+  for (int i = 0; i <= LARGEST * STEPS; i++) {
+    double octaves = i ? fmax(-1, log2((double)i / STEPS) / 2) : -1;
+    double alpha = SHADE_ALPHA * sqrt(fabs(octaves));
+    shades[i] = octaves < 0 ? argb(.1, .35, 1, alpha) : argb(1, .6, .05, alpha);
+  }
 }
 
-static cairo_surface_t *shaded(const rp_proxy *proxy, const recede_plane *plane, double w0) {
-  canvas c = start(proxy->width, proxy->height);
-  double limit = largest_source_w(proxy, plane);
-  for (int y = 0; y < proxy->height; y++)
-    for (int x = 0; x < proxy->width; x++) {
-      double w = recede_plane_w(plane, x, y);
-      if (in_mask(proxy, x, y) && w * MAGNIFIED_BELOW > limit)
-        c.pixels[y * c.stride + x] = argb(MAGNIFIED_COLOUR);
-      else if (w0 > 0)
-        c.pixels[y * c.stride + x] = shade_of(w / w0);
-    }
-  return finish(&c);
+typedef struct {
+  const rp_proxy *proxy;
+  double limit; /* what is nearer than this must be magnified */
+  guint32 magnified;
+} judge;
+
+static judge judge_of(const rp_proxy *proxy, const recede_plane *plane) {
+  return (judge){proxy, largest_source_w(proxy, plane) / MAGNIFIED_BELOW, argb(MAGNIFIED_COLOUR)};
+}
+
+static gboolean must_magnify(const judge *j, int x, int y, double w) {
+  return w > j->limit && j->proxy->mask[y * j->proxy->width + x];
 }
 
 cairo_surface_t *rp_surface_of_scale(const rp_proxy *proxy, const recede_plane *plane, double x,
                                      double y) {
+  guint32 shades[LARGEST * STEPS + 1], beyond = argb(.5, .5, .5, SHADE_ALPHA);
   double w0 = recede_plane_w(plane, x, y);
-  return shaded(proxy, plane, w0 > 0 ? w0 : 1e-3);
+  judge j = judge_of(proxy, plane);
+  canvas c = start(proxy->width, proxy->height);
+  if (!(w0 > 0)) w0 = 1e-3;
+  make_shades(shades);
+  for (int row = 0; row < proxy->height; row++) {
+    double first = recede_plane_w(plane, 0, row), step = recede_plane_w(plane, 1, row) - first;
+    for (int i = 0; i < proxy->width; i++) {
+      double w = first + i * step, scale = fmin(w / w0, LARGEST);
+      guint32 shade = scale > 0 ? shades[(int)(scale * STEPS)] : beyond;
+      c.pixels[row * c.stride + i] = must_magnify(&j, i, row, w) ? j.magnified : shade;
+    }
+  }
+  return finish(&c);
 }
 
 cairo_surface_t *rp_surface_of_magnified(const rp_proxy *proxy, const recede_plane *plane) {
-  return shaded(proxy, plane, 0);
+  judge j = judge_of(proxy, plane);
+  canvas c = {.surface = NULL};
+  for (int y = 0; y < proxy->height; y++) {
+    double first = recede_plane_w(plane, 0, y), step = recede_plane_w(plane, 1, y) - first;
+    for (int x = 0; x < proxy->width; x++) {
+      if (!must_magnify(&j, x, y, first + x * step)) continue;
+      if (!c.surface) c = start(proxy->width, proxy->height);
+      c.pixels[y * c.stride + x] = j.magnified;
+    }
+  }
+  return c.surface ? finish(&c) : NULL;
 }

@@ -14,7 +14,7 @@ cairo_surface_t *rp_surface_of_outline(const rp_proxy *proxy);
  * horizon; red where the fill must magnify. */
 cairo_surface_t *rp_surface_of_scale(const rp_proxy *proxy, const recede_plane *plane, double x,
                                      double y);
-/* Only where the fill must magnify. */
+/* Only where the fill must magnify; NULL: nowhere. */
 cairo_surface_t *rp_surface_of_magnified(const rp_proxy *proxy, const recede_plane *plane);
 
 #endif

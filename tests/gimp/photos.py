@@ -102,8 +102,8 @@ def check_large(host, tap, photo):
     source, out = host.folder / "large.tif", host.folder / "large-out.tif"
     cv2.imwrite(str(source), image.astype(np.uint16), [cv2.IMWRITE_TIFF_COMPRESSION, 1])
     x, y, width, height = LARGE_HOLE
-    output = host.run(f'(define i (t-load "{source}"))', "(define d (t-layer i))",
-                      f"(gimp-image-select-rectangle i CHANNEL-OP-REPLACE {x} {y} {width} {height})",
+    select = f"(gimp-image-select-rectangle i CHANNEL-OP-REPLACE {x} {y} {width} {height})"
+    output = host.run(f'(define i (t-load "{source}"))', "(define d (t-layer i))", select,
                       host.fill(orientation="angles", slant=80, quality="draft", seed=1),
                       f'(t-save i "{out}")')
     after = cv2.imread(str(out), -1)
@@ -117,7 +117,7 @@ def check_large(host, tap, photo):
     tap.case((after[mask] != image[mask]).any(-1).mean() > .99
              and abs(filled.mean() / near.mean() - 1) < .25
              and .3 < filled.std() / near.std() < 3, "and it looks like what is around it",
-             f"mean {filled.mean():.0f} {near.mean():.0f} spread {filled.std():.0f} {near.std():.0f}")
+             f"mean {filled.mean()} {near.mean()}, spread {filled.std()} {near.std()}")
 
 
 def main():

@@ -53,7 +53,7 @@ def check_table(host, tap, window, server, frame):
         picture(folder / f"picture-{alpha:d}.png", alpha)
     for number, case in enumerate(cases()):
         stem = folder / str(number)
-        name = f"{' '.join(case[:3])}{' offset' if case[3] else ''}{' new layer' if case[4] else ''}"
+        name = ' '.join(case[:3]) + ' offset' * bool(case[3]) + ' new layer' * bool(case[4])
         good, text = server.run(script_of(
             host, case, folder / f"picture-{MODES[case[0]][1]:d}.png", stem, SHOW))
         if not good:
@@ -126,4 +126,5 @@ def main():
     tap.plan()
 
 
-main()
+if __name__ == "__main__":
+    main()
