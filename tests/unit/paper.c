@@ -141,6 +141,25 @@ static void same_for_any_threads(void) {
     }
 }
 
+/* Differences, and ranges of histograms, that overflow to infinity. (Found by fuzzing.) */
+static void huge_floats(void) {
+  enum { SIDE = 24 };
+  static float pixels[SIDE * SIDE];
+  for (guint m = 0; m < G_N_ELEMENTS(methods); m++) {
+    task t = task_new(SIDE, SIDE, 0, methods[m]);
+    for (int i = 0; i < SIDE * SIDE; i++) pixels[i] = (float)(i * 7 % 5 - 2) * 1.6e38f;
+    recede_view view = {pixels, SIDE * sizeof *pixels, SIDE, SIDE, 1, RECEDE_FLOAT};
+    recede_job *job = recede_job_new(&t.host);
+    recede_job_set_image(job, &view);
+    recede_job_set_mask(job, &t.mask.view);
+    recede_job_set_params(job, &t.params);
+    g_assert_cmpint(recede_job_fill(job, &view), ==, RECEDE_OK);
+    for (int i = 0; i < SIDE * SIDE; i++) g_assert_true(isfinite(pixels[i]));
+    recede_job_free(&job);
+    task_clear(&t);
+  }
+}
+
 /* The bytes of today, so that no change of them goes unnoticed. */
 static void held_bytes(void) {
   static const struct {
@@ -303,6 +322,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/paper/allocations", every_allocation_fails);
   g_test_add_func("/paper/tiny", tiny_pictures);
   g_test_add_func("/paper/slant", slants_from_90_are_refused);
+  g_test_add_func("/paper/huge-floats", huge_floats);
   g_test_add_func("/paper/memory", memory_within_the_estimate);
   return g_test_run();
 }

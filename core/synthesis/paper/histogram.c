@@ -34,10 +34,7 @@ static void count_pixels(const rc_side *side, uint8_t flag, int colours,
       if (!counted(side, flag, x, y)) continue;
       const float *pixel = rc_pixel(&side->image, x, y);
       pixels++;
-      for (int k = 0; k < colours; k++) {
-        float bin = (pixel[k] - weight->low[k]) * weight->per_bin[k];
-        histogram[k][bin < 0 ? 0 : bin >= RC_HISTOGRAM_BINS ? RC_HISTOGRAM_BINS - 1 : (int)bin]++;
-      }
+      for (int k = 0; k < colours; k++) histogram[k][rc_histogram_bin(weight, k, pixel[k])]++;
     }
   for (int k = 0; k < colours && pixels > 0; k++)
     for (int b = 0; b < RC_HISTOGRAM_BINS; b++) histogram[k][b] /= pixels;

@@ -17,15 +17,17 @@ typedef struct rc_histogram_weight {
 
 /* gain * max[0, H_x(b) - H_z(b)], histograms as parts of 1; 0 switches it off. */
 void rc_histogram_compare(const rc_paper_level *level, double gain, rc_histogram_weight *weight);
+/* Bin 0 too for a value that is not a number: the range of huge floats overflows. */
+static inline int rc_histogram_bin(const rc_histogram_weight *weight, int k, float value) {
+  float bin = (value - weight->low[k]) * weight->per_bin[k];
+  return !(bin > 0) ? 0 : bin >= RC_HISTOGRAM_BINS ? RC_HISTOGRAM_BINS - 1 : (int)bin;
+}
 /* 1 / (1 + sum over the colours), eq. 9 without w_p. */
 static inline float rc_histogram_of(const rc_histogram_weight *weight, const float *colour,
                                     int colours) {
   float sum = 1;
-  for (int k = 0; k < colours; k++) {
-    float bin = (colour[k] - weight->low[k]) * weight->per_bin[k];
-    int b = bin < 0 ? 0 : bin >= RC_HISTOGRAM_BINS ? RC_HISTOGRAM_BINS - 1 : (int)bin;
-    sum += weight->excess[k][b];
-  }
+  for (int k = 0; k < colours; k++)
+    sum += weight->excess[k][rc_histogram_bin(weight, k, colour[k])];
   return 1 / sum;
 }
 
