@@ -30,7 +30,18 @@ struct rp_panel {
 };
 
 static void say(rp_panel *panel, const char *text) {
-  gtk_label_set_text(GTK_LABEL(panel->status), text ? text : "");
+  gtk_label_set_text(GTK_LABEL(panel->status), text);
+}
+
+/* What the user sees and can do with it. */
+static void explain(rp_panel *panel) {
+  if (panel->scene.show == RP_SHOW_SCALE)
+    say(panel, _("Blue: the texture gets smaller; orange: larger than in the selection; red: it "
+                 "would have to be magnified; grey: beyond the horizon."));
+  else if (panel->scene.show == RP_SHOW_DRAFT && panel->scene.draft.pixels)
+    say(panel, _("Draft: the real fill at the preview's size."));
+  else
+    say(panel, _("Drag the horizon, its handles or the grid to lay the plane on the picture."));
 }
 
 static int choice(const rp_panel *panel, const char *key) {
@@ -43,7 +54,7 @@ static void on_draft(gpointer user, const rp_request *request) {
   rp_panel *panel = user;
   if (request->status == RECEDE_OK) {
     rp_scene_set_draft(&panel->scene, panel->draft_pixels);
-    say(panel, _("Draft: the real fill at the preview's size."));
+    explain(panel);
   } else {
     char *text = rp_failure(request);
     say(panel, text);
@@ -126,7 +137,7 @@ static void take_angles(rp_panel *panel) {
   panel->setting = TRUE;
   panel->set(panel->user, "orientation", RECEDE_ORIENTATION_ANGLES);
   panel->setting = FALSE;
-  say(panel, NULL);
+  explain(panel);
 }
 
 static void on_estimate(gpointer user, const rp_request *request) {
@@ -219,11 +230,8 @@ static void on_show(GtkToggleButton *button, gpointer user) {
   for (int i = 0; i < SHOWS; i++)
     if (panel->shows[i] == GTK_WIDGET(button)) panel->scene.show = (rp_show)i;
   panel->scene.shade_is_old = TRUE;
-  if (panel->scene.show == RP_SHOW_SCALE)
-    say(panel, _("Blue: the texture gets smaller; orange: larger than in the selection; red: it "
-                 "would have to be magnified; grey: beyond the horizon."));
-  else if (!panel->scene.draft.pixels)
-    renew_draft(panel);
+  explain(panel);
+  if (panel->scene.show == RP_SHOW_DRAFT && !panel->scene.draft.pixels) renew_draft(panel);
   gtk_widget_queue_draw(panel->area);
 }
 
@@ -284,7 +292,7 @@ rp_panel *rp_panel_new(rp_host *host, rp_settings *settings, rp_picture *picture
   else
     rp_scene_make_exemplar(&panel->scene);
   show_plane(panel);
-  say(panel, _("Drag the horizon, its handles or the grid to lay the plane on the picture."));
+  explain(panel);
   if (choice(panel, "orientation") == RECEDE_ORIENTATION_AUTO) start_estimate(panel);
   return panel;
 }

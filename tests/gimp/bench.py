@@ -35,7 +35,7 @@ def ms(values):
 
 
 def make_photo(path, mask_path):
-    """The pier, enlarged; noise fills the lower bytes. Uncompressed, so that reading costs little."""
+    """The pier, enlarged; noise fills the lower bytes. Uncompressed: reading costs little."""
     noise = np.random.default_rng(1)
     image = cv2.resize(cv2.imread(str(PROJECT / "docs/images/pier.jpg")), SIZE).astype(np.int32)
     image = (image * 257 + noise.integers(-400, 401, image.shape)).clip(0, 65535)

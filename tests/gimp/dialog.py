@@ -21,14 +21,17 @@ SELECTION = (330, 380, 300, 130)
 SELECT = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE {} {} {} {})"
 
 
+FILL_MENU = ("Filters", "Enhance", "Perspective Fill")
+
+
 class Dialog:
-    def __init__(self, window, tap):
-        self.window, self.tap, self.root = window, tap, None
+    def __init__(self, window, tap, path=FILL_MENU):
+        self.window, self.tap, self.path, self.root = window, tap, path, None
 
     def open(self, frame):
         start = time.monotonic()
-        self.window.menu(frame, "Filters", "Enhance", "Perspective Fill")
-        self.root = self.window.frame("Perspective Fill", 30)
+        self.window.menu(frame, *self.path)
+        self.root = self.window.frame(self.path[-1], 30)
         self.tap.case(self.root is not None, "opens from the menu",
                       f"after {time.monotonic() - start:.1f} s")
         self.preview = self.window.find(self.root, ("unknown", "drawing area", "panel", "canvas"),
@@ -71,14 +74,14 @@ class Dialog:
         self.window.press(self.window.button(self.root, name))
 
     def choose(self, *words):
-        """The first item of any combo box that has all words."""
+        """The first item that has all words: of a combo box, or, in GIMP 3.2, a radio button."""
         item = wait_for(lambda: next((node for node in walk(self.root)
-                                      if node.getRoleName() == "menu item"
+                                      if node.getRoleName() in ("menu item", "radio button")
                                       and all(word in node.name for word in words)), None), 10)
         self.window.press(item)
 
     def alive(self):
-        return self.window.frame("Perspective Fill", 1) is not None
+        return self.window.frame(self.path[-1], 1) is not None
 
 
 def on_screen(dialog, x, y):

@@ -52,19 +52,18 @@ def choice(key, value):
 
 
 class Host:
-    def __init__(self, name, plugin, threads=None):
+    def __init__(self, name, plugin, needed=(), settings=()):
         self.name, self.folder = name, Path(tempfile.mkdtemp(prefix="recede-gimp"))
         plugins = self.folder / "plug-ins"
         (plugins / "recede").mkdir(parents=True)
         (plugins / "recede" / "recede").symlink_to(Path(plugin).resolve())
-        for needed in NEEDED:
-            if (Path(SYSTEM_PLUGINS[name]) / needed).exists():
-                (plugins / needed).symlink_to(Path(SYSTEM_PLUGINS[name]) / needed)
+        for each in (*NEEDED, *needed):
+            if (Path(SYSTEM_PLUGINS[name]) / each).exists():
+                (plugins / each).symlink_to(Path(SYSTEM_PLUGINS[name]) / each)
         lines = [f'(plug-in-path "{plugins}")']
-        if threads:
-            lines.append(f"(num-processors {threads})")
         if name == "3":
             lines.append("(show-welcome-dialog no)")
+        lines += settings
         self.gimprc = self.folder / "gimprc"
         self.gimprc.write_text("\n".join(lines) + "\n")
         self.status = None
@@ -74,6 +73,25 @@ class Host:
 
     def __exit__(self, *_):
         shutil.rmtree(self.folder, ignore_errors=True)
+
+    def install(self, project, plugin):
+        """As a user does with ./dev install, into a folder of its own. Returns what was said."""
+        user, link = self.folder / "user", self.folder / "plug-ins" / "recede" / "recede"
+        variable = "GIMP2_DIRECTORY" if self.name == "2" else "GIMP3_DIRECTORY"
+        self.installer = f"{project}/plugin/install.sh"
+        self.installing = {**os.environ, "XDG_CONFIG_HOME": str(self.folder / "config"),
+                           variable: str(user),
+                           "RECEDE_BUILD": str(Path(plugin).resolve().parents[2])}
+        done = subprocess.run([self.installer, "install"], env=self.installing,
+                              capture_output=True, text=True, check=False)
+        self.gimprc.write_text(self.gimprc.read_text().replace(
+            str(self.folder / "plug-ins"), f"{self.folder / 'plug-ins'}:{user / 'plug-ins'}"))
+        link.unlink()
+        self.installed = user / "plug-ins" / "recede"
+        return done.stdout + done.stderr
+
+    def uninstall(self):
+        subprocess.run([self.installer, "uninstall"], env=self.installing, check=False)
 
     def environment(self, **more):
         kept = {key: value for key, value in os.environ.items() if key != "DISPLAY"}

@@ -4,8 +4,6 @@ folder.
 
 scripts.py HOST PLUGIN PROJECT
 """
-import os
-import subprocess
 import sys
 from pathlib import Path
 
@@ -68,25 +66,16 @@ def check_batch(host, tap, scripts):
 
 def check_install(host, tap, project, plugin):
     """Into a profile of its own, found there by GIMP, and out again."""
-    profile = host.folder / "user"
-    variable = "GIMP2_DIRECTORY" if host.name == "2" else "GIMP3_DIRECTORY"
-    environment = {**os.environ, "XDG_CONFIG_HOME": str(host.folder / "config"),
-                   variable: str(profile), "RECEDE_BUILD": str(Path(plugin).resolve().parents[2])}
-    done = subprocess.run([f"{project}/plugin/install.sh", "install"], env=environment,
-                          capture_output=True, text=True, check=False)
-    placed = profile / "plug-ins" / "recede" / "recede"
-    tap.case(placed.exists(), "install puts it where GIMP looks", done.stdout + done.stderr)
+    said = host.install(project, plugin)
+    placed = host.installed / "recede"
+    tap.case(placed.exists(), "install puts it where GIMP looks", said)
     catalogues = list((placed.parent / "locale").glob("*/LC_MESSAGES/recede.mo"))
     languages = [line for line in (project / "po/LINGUAS").read_text().split("\n")
                  if line and not line.startswith("#")]
     tap.case(len(catalogues) == len(languages), "with every catalogue", catalogues)
-    host.gimprc.write_text(host.gimprc.read_text().replace(
-        str(host.folder / "plug-ins"), f"{host.folder / 'plug-ins'}:{profile / 'plug-ins'}"))
-    (host.folder / "plug-ins" / "recede" / "recede").unlink()
     host.run("")
-    tap.case(str(placed) in host.pluginrc().replace("${gimp_dir}", str(profile)),
-             "and GIMP finds it there")
-    subprocess.run([f"{project}/plugin/install.sh", "uninstall"], env=environment, check=False)
+    tap.case(str(placed) in host.pluginrc(), "and GIMP finds it there")
+    host.uninstall()
     tap.case(not placed.parent.exists(), "uninstall takes it away")
 
 
