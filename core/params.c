@@ -51,7 +51,7 @@ static const recede_param_info table[] = {
     CHOICE("orientation", orientation, N_("Orientat_ion"),
            N_("Where the orientation of the plane comes from"), 0, orientations, orientation_labels,
            COMMON),
-    DOUBLE("slant", slant_deg, N_("Sla_nt"),
+    DOUBLE("slant", slant_deg, N_("Sl_ant"),
            N_("Angle between the view axis and the plane's normal: 0 is seen from the front; above "
               "90 the image's centre lies beyond the horizon"),
            "°", 0, 179.9, 45, COMMON),

@@ -15,7 +15,7 @@ static const char *const result_labels[] = {N_("This layer"), N_("A new layer ab
 static const rp_argument width_row = {
     "width", N_("_Width"), N_("Width of the new image"), "px", RP_INT, 1, 262144, 1024, NULL, NULL};
 static const rp_argument height_row = {
-    "height", N_("_Height"), N_("Height of the new image"), "px", RP_INT, 1, 262144, 768,
+    "height", N_("Hei_ght"), N_("Height of the new image"), "px", RP_INT, 1, 262144, 768,
     NULL,     NULL};
 static const rp_argument source_row = {
     "source",

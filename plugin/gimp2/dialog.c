@@ -140,7 +140,7 @@ static GtkWidget *add_whole(dialog *d, int index) {
 
 static void add_seed(dialog *d, int index) {
   GtkWidget *box = add_whole(d, index);
-  GtkWidget *button = gtk_button_new_with_mnemonic(_("Ne_w seed"));
+  GtkWidget *button = gtk_button_new_with_mnemonic(_("_New seed"));
   gtk_box_pack_start(GTK_BOX(box), button, FALSE, FALSE, 0);
   g_signal_connect(button, "clicked", G_CALLBACK(on_new_seed), d);
 }

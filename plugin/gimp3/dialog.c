@@ -73,7 +73,7 @@ static void on_new_seed(GtkButton *button, gpointer user) {
 }
 
 static GtkWidget *new_seed_button(dialog *d) {
-  GtkWidget *button = gtk_button_new_with_mnemonic(_("Ne_w seed"));
+  GtkWidget *button = gtk_button_new_with_mnemonic(_("_New seed"));
   g_signal_connect(button, "clicked", G_CALLBACK(on_new_seed), d);
   gtk_widget_set_halign(button, GTK_ALIGN_END);
   gtk_widget_show(button);

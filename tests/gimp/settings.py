@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The texture's dialog in a real window, of an installed plug-in: a new image, last values, presets,
-Reset, the help page, the icon.
+"""The texture's dialog in a real window, of an installed plug-in: a new image, last values,
+presets, Reset, the help page, the icon.
 
 windowed.sh settings.py HOST PLUGIN PROJECT ARTEFACTS
 """
