@@ -109,12 +109,18 @@ float rc_query_cost(const rc_level *level, const rc_kernels *kernels, const rc_q
   return price + (float)kernels->distance(&query->patch, &footprint, stop) * query->per_weight;
 }
 
-bool rc_place_pixel(const rc_level *level, const rc_place *place, uint32_t *pixel) {
+bool rc_place_at(const rc_level *level, const rc_place *place, size_t *at) {
   float x = place->x + level->chart.x0 + .5f, y = place->y + level->chart.y0 + .5f;
   if (place->beyond ||
       !(x >= 0.f && y >= 0.f && x < (float)level->width && y < (float)level->height))
     return false;
-  size_t at = (size_t)(int)y * (size_t)level->width + (size_t)(int)x;
+  *at = (size_t)(int)y * (size_t)level->width + (size_t)(int)x;
+  return true;
+}
+
+bool rc_place_pixel(const rc_level *level, const rc_place *place, uint32_t *pixel) {
+  size_t at;
+  if (!rc_place_at(level, place, &at)) return false;
   *pixel = level->pixels[at];
   return level->room[at] > 0;
 }

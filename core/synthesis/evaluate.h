@@ -32,7 +32,9 @@ float rc_query_cost(const rc_level *level, const rc_kernels *kernels, const rc_q
                     rc_copy copy, float limit);
 /* Price of ratio and mismatch alone; RC_NO_COST outside the allowed range. */
 float rc_place_price(float variance, const rc_place *place, float low, float high);
-/* The level's pixel nearest to a place; false when it is no source. */
+/* The index of the level's pixel nearest to a place; false when it lies outside the picture. */
+bool rc_place_at(const rc_level *level, const rc_place *place, size_t *at);
+/* Its colour; false when it is no source. */
 bool rc_place_pixel(const rc_level *level, const rc_place *place, uint32_t *pixel);
 
 #endif

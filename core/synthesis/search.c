@@ -24,7 +24,7 @@ typedef struct pixel_state {
   rc_copy neighbours[4];
   int neighbour_count, x, y;
   rc_copy best;
-  float base, total; /* without and with the price of incoherence */
+  float base, total; /* without and with price_of */
   float price;       /* of one neighbour that differs */
 } pixel_state;
 
@@ -48,9 +48,21 @@ static void find_neighbours(const scan *s, rc_box tile, pixel_state *state) {
   }
 }
 
+static float usage_price(const scan *s, const pixel_state *state, rc_copy copy) {
+  size_t at;
+  if (!s->search->usage || isnan(copy.a)) return 0.f;
+  rc_place place = rc_copy_place(&s->level->chart, copy, state->query.x, state->query.y);
+  return rc_place_at(s->level, &place, &at) ? s->search->usage[at] : 0.f;
+}
+
+/* What a copy costs besides its distance. */
+static float price_of(const scan *s, const pixel_state *state, rc_copy copy) {
+  return state->price * (float)differing(state, copy) + usage_price(s, state, copy);
+}
+
 static void try_copy(const scan *s, pixel_state *state, rc_copy copy, float must_beat) {
   if (rc_same_copy(copy, state->best) || isnan(copy.a)) return;
-  float price = state->price * (float)differing(state, copy);
+  float price = price_of(s, state, copy);
   float limit = state->total * must_beat - price;
   if (!(limit > 0.f)) return;
   float base = rc_query_cost(s->level, s->search->kernels, &state->query, copy, limit);
@@ -124,7 +136,7 @@ static void improve_pixel(const scan *s, rc_box tile, pixel_state *state) {
     state->base = isnan(state->best.a) ? RC_NO_COST
                                        : rc_query_cost(level, s->search->kernels, &state->query,
                                                        state->best, RC_NO_COST);
-  state->total = state->base + state->price * (float)differing(state, state->best);
+  state->total = state->base + price_of(s, state, state->best);
   for (int i = 0; i < state->neighbour_count; i++) try_copy(s, state, state->neighbours[i], 1.f);
   try_anywhere(s, state);
   try_periods(s, state);

@@ -10,6 +10,7 @@ typedef struct rc_search {
   int pass;               /* even: forward, odd: backward and the tiles shifted by half */
   bool recost;            /* the guide has changed since the costs were taken */
   float coherence;        /* price for each 4-neighbour with another copy, in variances */
+  const float *usage;     /* price of each pixel as a source, or NULL */
   int local_radius;       /* largest radius of the local random candidates, px; 0 = none */
   int anywhere;           /* random candidates from all sources of the right scale */
   const rc_copy *periods; /* candidates to add to the pixel's copy (flat) */

@@ -57,6 +57,7 @@ def main():
     variants = {'everything on': []}
     variants.update({f'no {name}: {stages()[name]}': [f'--set=engine-{name}=0']
                      for name in chosen.stages})
+    variants['no choice: a single start of the coarsest level'] = ['--set=engine-starts=1']
     rows, everything, base = [], {}, None
     for title, extra in variants.items():
         print(title, file=sys.stderr)

@@ -1,0 +1,178 @@
+#include "synthesis/descent.h"
+
+#include <math.h>
+
+#include "base/memory.h"
+#include "base/random.h"
+#include "synthesis/search.h"
+#include "synthesis/start.h"
+#include "synthesis/trial.h"
+#include "synthesis/usage.h"
+#include "synthesis/vote.h"
+
+/* Each px deeper in the hole counts 1.3 times less; 1.15 is too trusting. */
+#define CONFIDENCE_FALLOFF 1.3f
+#define COHERENCE .03f
+#define COHERENCE_OF_COMPOSITION .06f
+#define PERIOD_TRIES 3
+#define PASSES 2
+
+/* What the quality levels change. */
+typedef struct effort {
+  int starts;            /* of the coarsest level; the best is kept */
+  int start_tries;       /* random candidates per pixel of the start */
+  int coarse_iterations; /* at the coarsest level; half as many with each finer one */
+  int fine_iterations;   /* but at least these */
+  int finest_iterations; /* and these at the finest; 0: only takes the coarser copies over */
+  int anywhere;          /* random candidates per pixel from all sources, coarsest level */
+  int local_radius;      /* largest radius of the random candidates nearby, px */
+} effort;
+
+static const effort efforts[] = {
+    [RECEDE_QUALITY_DRAFT] = {2, 30, 6, 2, 0, 2, 8},
+    [RECEDE_QUALITY_NORMAL] = {4, 60, 12, 2, 2, 4, 16},
+    [RECEDE_QUALITY_BEST] = {8, 100, 24, 4, 4, 6, 16},
+};
+
+static const effort *effort_of(const rc_descent *e) { return &efforts[e->params->quality]; }
+
+/* The coarse levels decide and cost next to nothing. */
+static int iterations_at(const rc_descent *e, int exponent) {
+  const effort *by = effort_of(e);
+  int most = e->params->engine_iterations ? e->params->engine_iterations : by->coarse_iterations;
+  int here = most >> (e->level_count - 1 - exponent);
+  int least = exponent || e->level_count == 1 ? by->fine_iterations : by->finest_iterations;
+  if (!exponent && e->level_count > 1) return least < most ? least : most;
+  least = least < most ? least : most;
+  return here > least ? here : least;
+}
+
+static rc_search search_of(const rc_descent *e, int exponent, int trial, int iteration, int pass) {
+  bool coarsest = exponent == e->level_count - 1;
+  return (rc_search){.kernels = e->kernels,
+                     .key = rc_key((uint64_t)e->params->seed, (uint32_t)exponent,
+                                   (uint32_t)(trial * 1024 + iteration * PASSES + pass)),
+                     .pass = pass,
+                     .recost = pass == 0,
+                     .coherence = e->params->engine_coherence ? COHERENCE : 0.f,
+                     .local_radius = effort_of(e)->local_radius,
+                     .anywhere = coarsest ? effort_of(e)->anywhere : 0,
+                     .periods = e->periods,
+                     .period_count = coarsest ? e->period_count : 0,
+                     .period_tries = PERIOD_TRIES};
+}
+
+/* Propagation alone, with a higher price on incoherence: whole copies for the composition. */
+static recede_status settle(rc_context *context, const rc_descent *e, rc_level *level, rc_copy *old,
+                            bool recost) {
+  for (int pass = 0; pass < PASSES; pass++) {
+    rc_search search = {.kernels = e->kernels,
+                        .pass = pass,
+                        .recost = recost && pass == 0,
+                        .coherence = e->params->engine_coherence ? COHERENCE_OF_COMPOSITION : 0.f};
+    RC_TRY(rc_search_pass(context, level, &search, old));
+  }
+  return RECEDE_OK;
+}
+
+/* Scratch of a level. */
+typedef struct workspace {
+  rc_copy *old;
+  uint32_t *guide;
+  float *usage;
+} workspace;
+
+static recede_status workspace_new(rc_context *context, const rc_level *level, workspace *scratch) {
+  size_t box = (size_t)level->box_w * (size_t)level->box_h;
+  RC_TRY(RC_NEW(context, box, &scratch->old));
+  RC_TRY(RC_NEW(context, box, &scratch->guide));
+  return RC_NEW(context, (size_t)level->width * (size_t)level->height, &scratch->usage);
+}
+
+/* Search and vote in turn. This is trial of trials, the stage's progress is theirs together. */
+static recede_status iterate(rc_context *context, const rc_descent *e, int exponent, int trial,
+                             int trials, rc_level *level, workspace *scratch) {
+  int iterations = iterations_at(e, exponent);
+  bool coarsest = exponent == e->level_count - 1;
+  for (int i = 0; i < iterations; i++) {
+    if (i || !coarsest) RC_TRY(rc_vote(context, level, scratch->guide));
+    for (int pass = 0; pass < PASSES; pass++) {
+      rc_search search = search_of(e, exponent, trial, i, pass);
+      /* The finest level refines what the coarser ones have decided. */
+      if (e->params->engine_usage && exponent > 0) {
+        RC_TRY(rc_usage_prices(context, level, scratch->usage));
+        search.usage = scratch->usage;
+      }
+      RC_TRY(rc_search_pass(context, level, &search, scratch->old));
+    }
+    RC_TRY(rc_progress(context, (trial + (double)(i + 1) / iterations) / trials));
+  }
+  return RECEDE_OK;
+}
+
+static recede_status start_once(rc_context *context, const rc_descent *e, int trial,
+                                rc_level *level) {
+  rc_search search = {.kernels = e->kernels,
+                      .key = rc_key((uint64_t)e->params->seed, 99, (uint32_t)trial),
+                      .periods = e->periods,
+                      .period_count = e->period_count,
+                      .anywhere = effort_of(e)->start_tries};
+  return rc_start(context, level, &search);
+}
+
+/* The coarsest level: starts it several times and keeps the best. */
+static recede_status run_coarsest(rc_context *context, rc_descent *e, rc_level *level,
+                                  workspace *scratch) {
+  int exponent = e->level_count - 1, wanted = e->params->engine_starts;
+  int trials = rc_trials_worth(level, wanted ? wanted : effort_of(e)->starts);
+  uint64_t key = rc_key((uint64_t)e->params->seed, 99, 0);
+  double least = INFINITY;
+  rc_trial best;
+  RC_TRY(rc_trial_new(context, level, &best));
+  if (e->params->engine_periods)
+    RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count));
+  for (int trial = 0; trial < trials; trial++) {
+    RC_TRY(start_once(context, e, trial, level));
+    RC_TRY(iterate(context, e, exponent, trial, trials, level, scratch));
+    double misfit = trials > 1 ? rc_misfit(level) : 0;
+    if (!(misfit < least) && trial) continue;
+    least = misfit;
+    rc_trial_save(level, &best);
+  }
+  rc_trial_restore(level, &best);
+  return RECEDE_OK;
+}
+
+static recede_status run_level(rc_context *context, rc_descent *e, int exponent, rc_level *level) {
+  workspace scratch;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(workspace_new(context, level, &scratch));
+  if (exponent == e->level_count - 1)
+    RC_TRY(run_coarsest(context, e, level, &scratch));
+  else
+    RC_TRY(iterate(context, e, exponent, 0, 1, level, &scratch));
+  bool untouched = !iterations_at(e, exponent);
+  if (untouched) RC_TRY(rc_vote(context, level, scratch.guide));
+  if (exponent == 0) RC_TRY(settle(context, e, level, scratch.old, untouched));
+  rc_release(context, mark);
+  return RECEDE_OK;
+}
+
+recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
+  rc_level coarser, level;
+  float gamma = e->params->engine_confidence ? CONFIDENCE_FALLOFF : 1.f;
+  for (int exponent = e->level_count - 1; exponent >= 0; exponent--) {
+    bool coarsest = exponent == e->level_count - 1;
+    rc_chart chart = rc_chart_coarser(e->chart, exponent);
+    double from = .1 + .6 * pow(.25, exponent), to = .1 + .6 * pow(.25, exponent - 1);
+    RC_TRY(
+        rc_stage(context, coarsest ? "start" : "search", coarsest ? .1 : from, exponent ? to : .8));
+    RC_TRY(rc_level_new(context, &e->images[exponent], &e->flags[exponent], &chart, gamma, e->gain,
+                        coarsest ? NULL : &coarser.ranges, &level));
+    if (!coarsest) rc_field_from_coarser(&level, &coarser);
+    RC_TRY(run_level(context, e, exponent, &level));
+    coarser = level;
+  }
+  *finest = level;
+  return RECEDE_OK;
+}

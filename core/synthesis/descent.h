@@ -1,0 +1,25 @@
+/* The coarse-to-fine loop: start at the coarsest level, then search and vote in turn at each. */
+#ifndef RECEDE_SYNTHESIS_DESCENT_H
+#define RECEDE_SYNTHESIS_DESCENT_H
+
+#include "synthesis/level.h"
+#include "synthesis/periods.h"
+
+#define RC_MAX_LEVELS 10
+
+typedef struct rc_descent {
+  const recede_params *params;
+  const rc_kernels *kernels;
+  rc_chart chart; /* of the finest level */
+  float gain;     /* of the bytes */
+  int level_count;
+  rc_image images[RC_MAX_LEVELS];
+  rc_mask flags[RC_MAX_LEVELS];
+  rc_copy periods[RC_MOST_PERIODS]; /* px of the coarsest level */
+  int period_count;
+} rc_descent;
+
+/* Makes the finest level, its field settled into whole copies. Progress .1 .. .8. */
+recede_status rc_descend(rc_context *context, rc_descent *descent, rc_level *finest);
+
+#endif
