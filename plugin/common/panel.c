@@ -201,6 +201,7 @@ static void on_dragged(gpointer user, double slant_deg, double tilt_deg) {
   take_angles(panel);
   set_values(panel, slant_deg, tilt_deg);
   show_plane(panel);
+  explain(panel);
 }
 
 static void take_source(rp_panel *panel) {

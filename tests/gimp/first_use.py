@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A new user's first fill, step by step, with the pictures of docs/first-use.md.
+"""A new user's first fill with the installed plug-in, step by step, with the pictures of
+docs/first-use.md.
 
 windowed.sh first_use.py HOST PLUGIN PICTURE FOLDER
 """
@@ -14,6 +15,7 @@ from host import PRELUDE, Host, Tap
 from server import IMAGE, Server
 from window import Window, wait_for
 
+PROJECT = Path(__file__).resolve().parents[2]
 BOX = (155, 345, 275, 185)  # the lane markings left of the middle
 HORIZON, GUESSED = 319, 162  # where it is in the photo; where the dialog puts it at first
 
@@ -21,8 +23,9 @@ HORIZON, GUESSED = 319, 162  # where it is in the photo; where the dialog puts i
 def keep(window, folder, number, name):
     shot = window.screenshot(f"first-use-{number}")
     path = folder / f"first-use-{number}-{name}.jpg"
-    subprocess.run(["convert", str(shot), "-resize", "1000x", "-quality", "85", "-strip",
-                    str(path)], check=True)
+    subprocess.run(["convert", str(shot), "-bordercolor", "black", "-border", "1", "-trim",
+                    "+repage", "-resize", "1000x", "-quality", "85", "-strip", str(path)],
+                   check=True)
     return path
 
 
@@ -31,11 +34,14 @@ def main():
     folder, tap = Path(folder), Tap()
     with Host(name, plugin) as host, Window(host, host.folder / "art") as window:
         server = Server(host)
+        host.install(PROJECT, plugin)
         window.start(Path(picture).resolve(), server.script)
         frame = window.frame("960x540", 60)
         server.run(PRELUDE[name] + IMAGE[name] + "(gimp-image-select-rectangle i "
                    f"CHANNEL-OP-REPLACE {BOX[0]} {BOX[1]} {BOX[2]} {BOX[3]})")
         window.dismiss_welcome()
+        time.sleep(1)
+        window.menu(frame, "View", "Zoom", "Fit Image in Window")
         time.sleep(1)
         start = time.monotonic()
         for menu in ("Filters", "Enhance"):
