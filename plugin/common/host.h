@@ -11,14 +11,28 @@ typedef struct rp_host rp_host;
 
 rp_target rp_host_target(const rp_host *host);
 gboolean rp_host_has_selection(const rp_host *host);
-/* Fill: the whole drawable and the selection. Synthesize: the selection's box in the drawable, or
- * all of it. */
-rp_read_status rp_host_read(const rp_host *host, rp_procedure procedure, rp_picture *picture);
-/* id: the drawable to copy from. FALSE: it is gone, or there is no memory; *message says it. */
-gboolean rp_host_read_source(const rp_host *host, int id, rp_picture *picture, char **message);
 
-/* Each is one step of undo. */
-void rp_host_write_in_place(rp_host *host, const rp_picture *picture);
+/* A drawable's pixels, to be unreferenced, and where they lie in the image. */
+typedef struct {
+  GeglBuffer *buffer;
+  GeglRectangle area; /* of what a procedure reads, in the drawable's coordinates */
+  int offset_x, offset_y;
+} rp_drawable;
+
+/* area: fill: all; synthesize: the selection's box, or all. */
+rp_drawable rp_host_open(const rp_host *host, rp_procedure procedure);
+/* The selection, in the image's coordinates; NULL: nothing is selected. */
+GeglBuffer *rp_host_open_selection(const rp_host *host);
+/* id: another drawable of this image. FALSE: there is none. */
+gboolean rp_host_open_other(const rp_host *host, int id, rp_drawable *drawable);
+
+/* The layer's alpha must stay. */
+gboolean rp_host_alpha_locked(const rp_host *host);
+GeglBuffer *rp_host_open_shadow(const rp_host *host);
+/* The shadow becomes the drawable, within the selection: one step of undo. */
+void rp_host_merge_shadow(const rp_host *host);
+void rp_host_updated(const rp_host *host, const GeglRectangle *box);
+/* One step of undo. */
 gboolean rp_host_write_new_layer(rp_host *host, const rp_picture *picture);
 /* The image's type, precision, profile and resolution. */
 gboolean rp_host_write_new_image(rp_host *host, const rp_picture *picture);

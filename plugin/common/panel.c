@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "background.h"
+#include "exchange.h"
 #include "intl.h"
 #include "preview.h"
 #include "procedure.h"
@@ -210,8 +211,7 @@ static void take_source(rp_panel *panel) {
   stop_draft(panel);
   rp_background_stop(&panel->estimate);
   rp_pixels_clear(&panel->picture->source);
-  if (id >= 0 && !rp_host_read_source(panel->host, id, panel->picture, &message))
-    say(panel, message);
+  if (id >= 0 && !rp_read_source(panel->host, id, panel->picture, &message)) say(panel, message);
   rp_scene_set_source(&panel->scene, panel->picture);
   g_free(message);
 }

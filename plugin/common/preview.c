@@ -8,6 +8,7 @@
 #define SMALLEST_HEIGHT 420
 
 typedef struct {
+  rp_painter painter;
   rp_scene *scene;
   rp_angles_func dragged;
   gpointer user;
@@ -67,8 +68,9 @@ static void draw(cairo_t *cairo, int width, int height, gpointer data) {
 
 GtkWidget *rp_preview_new(rp_scene *scene, rp_angles_func dragged, gpointer user) {
   preview *p = g_new0(preview, 1);
-  *p = (preview){.scene = scene, .dragged = dragged, .user = user};
-  GtkWidget *area = rp_ui_drawing_area(draw, p);
+  *p = (preview){.painter = {draw, p}, .scene = scene, .dragged = dragged, .user = user};
+  GtkWidget *area = gtk_drawing_area_new();
+  rp_ui_on_draw(area, &p->painter);
   g_object_set_data_full(G_OBJECT(area), "recede-preview", p, g_free);
   gtk_widget_set_size_request(area, SMALLEST_WIDTH, SMALLEST_HEIGHT);
   gtk_widget_add_events(area, GDK_BUTTON_PRESS_MASK | GDK_BUTTON_RELEASE_MASK |

@@ -1,6 +1,7 @@
 /* From a procedure's arguments to the changed image. */
 #include "procedure.h"
 
+#include "exchange.h"
 #include "intl.h"
 
 static gboolean into_new_layer(const rp_settings *settings) {
@@ -19,7 +20,7 @@ static gboolean take_source(const rp_host *host, const rp_settings *settings, rp
                             char **message) {
   int id = settings->procedure == RP_FILL ? (int)rp_settings_get(settings, "source") : -1;
   rp_pixels_clear(&picture->source);
-  return id < 0 || rp_host_read_source(host, id, picture, message);
+  return id < 0 || rp_read_source(host, id, picture, message);
 }
 
 rp_outcome rp_compute(const rp_host *host, const rp_settings *settings, rp_picture *picture,
@@ -51,7 +52,7 @@ static const char *refusal(const rp_host *host, const rp_settings *settings, gbo
 }
 
 static const char *read_picture(const rp_host *host, rp_procedure procedure, rp_picture *picture) {
-  switch (rp_host_read(host, procedure, picture)) {
+  switch (rp_read(host, procedure, picture)) {
     case RP_READ_OK: return NULL;
     case RP_READ_OUTSIDE: return rp_selection_outside();
     default: return rp_no_memory();
@@ -66,7 +67,7 @@ static const char *write_result(rp_host *host, const rp_settings *settings,
   else if (into_new_layer(settings))
     written = rp_host_write_new_layer(host, picture);
   else
-    rp_host_write_in_place(host, picture);
+    rp_write_in_place(host, picture);
   return written ? NULL : rp_no_memory();
 }
 

@@ -6,9 +6,13 @@
 #include <gtk/gtk.h>
 
 GtkWidget *rp_ui_box(GtkOrientation orientation, int spacing);
-/* A drawing area that calls draw with a context of its own. */
-GtkWidget *rp_ui_drawing_area(void (*draw)(cairo_t *cairo, int width, int height, gpointer user),
-                              gpointer user);
+typedef struct {
+  void (*draw)(cairo_t *cairo, int width, int height, gpointer user);
+  gpointer user;
+} rp_painter;
+
+/* Whenever the area is to be drawn, painter draws it; it must outlive the area. */
+void rp_ui_on_draw(GtkWidget *area, rp_painter *painter);
 /* A label of several lines that starts at the top left. */
 GtkWidget *rp_ui_paragraph(void);
 void rp_ui_set_cursor(GtkWidget *widget, GdkCursorType type);

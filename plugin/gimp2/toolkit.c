@@ -1,36 +1,25 @@
 /* GTK 2's ways. */
 #include "../common/toolkit.h"
 
-typedef struct {
-  void (*draw)(cairo_t *cairo, int width, int height, gpointer user);
-  gpointer user;
-} painter;
-
 GtkWidget *rp_ui_box(GtkOrientation orientation, int spacing) {
   return orientation == GTK_ORIENTATION_HORIZONTAL ? gtk_hbox_new(FALSE, spacing)
                                                    : gtk_vbox_new(FALSE, spacing);
 }
 
 static gboolean on_expose(GtkWidget *area, GdkEventExpose *event, gpointer data) {
-  painter *p = data;
+  const rp_painter *painter = data;
   GtkAllocation space;
   gtk_widget_get_allocation(area, &space);
   cairo_t *cairo = gdk_cairo_create(gtk_widget_get_window(area));
   gdk_cairo_region(cairo, event->region);
   cairo_clip(cairo);
-  p->draw(cairo, space.width, space.height, p->user);
+  painter->draw(cairo, space.width, space.height, painter->user);
   cairo_destroy(cairo);
   return TRUE;
 }
 
-GtkWidget *rp_ui_drawing_area(void (*draw)(cairo_t *cairo, int width, int height, gpointer user),
-                              gpointer user) {
-  GtkWidget *area = gtk_drawing_area_new();
-  painter *p = g_new(painter, 1);
-  *p = (painter){draw, user};
-  g_signal_connect(area, "expose-event", G_CALLBACK(on_expose), p);
-  g_object_set_data_full(G_OBJECT(area), "recede-painter", p, g_free);
-  return area;
+void rp_ui_on_draw(GtkWidget *area, rp_painter *painter) {
+  g_signal_connect(area, "expose-event", G_CALLBACK(on_expose), painter);
 }
 
 GtkWidget *rp_ui_paragraph(void) {

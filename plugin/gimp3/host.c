@@ -18,63 +18,41 @@ gboolean rp_host_has_selection(const rp_host *host) {
   return !gimp_selection_is_empty(host->image);
 }
 
-static GeglRectangle area_of(const rp_host *host, rp_procedure procedure) {
-  GeglRectangle area = {0, 0, gimp_drawable_get_width(host->drawable),
-                        gimp_drawable_get_height(host->drawable)};
+rp_drawable rp_host_open(const rp_host *host, rp_procedure procedure) {
+  rp_drawable drawable = {.buffer = gimp_drawable_get_buffer(host->drawable)};
+  GeglRectangle *area = &drawable.area;
+  *area = *gegl_buffer_get_extent(drawable.buffer);
   if (procedure == RP_SYNTHESIZE)
-    gimp_drawable_mask_intersect(host->drawable, &area.x, &area.y, &area.width, &area.height);
-  return area;
+    gimp_drawable_mask_intersect(host->drawable, &area->x, &area->y, &area->width, &area->height);
+  gimp_drawable_get_offsets(host->drawable, &drawable.offset_x, &drawable.offset_y);
+  return drawable;
 }
 
-rp_read_status rp_host_read(const rp_host *host, rp_procedure procedure, rp_picture *picture) {
-  GeglRectangle area = area_of(host, procedure);
-  gint x, y;
-  if (area.width < 1 || area.height < 1) return RP_READ_OUTSIDE;
-  gimp_drawable_get_offsets(host->drawable, &x, &y);
-  GeglBuffer *drawable = gimp_drawable_get_buffer(host->drawable);
-  GeglBuffer *selection =
-      rp_host_has_selection(host)
-          ? gimp_drawable_get_buffer(GIMP_DRAWABLE(gimp_image_get_selection(host->image)))
-          : NULL;
-  rp_read_status status = rp_picture_read(picture, drawable, selection, &area, x, y);
-  g_object_unref(drawable);
-  g_clear_object(&selection);
-  return status;
+GeglBuffer *rp_host_open_selection(const rp_host *host) {
+  if (!rp_host_has_selection(host)) return NULL;
+  return gimp_drawable_get_buffer(GIMP_DRAWABLE(gimp_image_get_selection(host->image)));
 }
 
-gboolean rp_host_read_source(const rp_host *host, int id, rp_picture *picture, char **message) {
-  gint x, y;
-  GimpDrawable *drawable = gimp_drawable_get_by_id(id);
-  if (!drawable || gimp_item_get_image(GIMP_ITEM(drawable)) != host->image) {
-    *message = g_strdup(_("source: there is no such channel or layer in this image."));
-    return FALSE;
-  }
-  gimp_drawable_get_offsets(drawable, &x, &y);
-  GeglBuffer *buffer = gimp_drawable_get_buffer(drawable);
-  gboolean read = rp_picture_read_source(picture, buffer, x, y);
-  g_object_unref(buffer);
-  if (!read) *message = g_strdup(rp_no_memory());
-  return read;
+gboolean rp_host_open_other(const rp_host *host, int id, rp_drawable *drawable) {
+  GimpDrawable *other = gimp_drawable_get_by_id(id);
+  if (!other || gimp_item_get_image(GIMP_ITEM(other)) != host->image) return FALSE;
+  *drawable = (rp_drawable){.buffer = gimp_drawable_get_buffer(other)};
+  gimp_drawable_get_offsets(other, &drawable->offset_x, &drawable->offset_y);
+  return TRUE;
 }
 
-/* The shadow's merge is what GIMP can undo; it works in floats, and blends by the selection. The
- * exact bytes are then laid over it. */
-void rp_host_write_in_place(rp_host *host, const rp_picture *picture) {
-  const GeglRectangle *box = &picture->box;
-  if (GIMP_IS_LAYER(host->drawable) && gimp_layer_get_lock_alpha(GIMP_LAYER(host->drawable)) &&
-      gimp_drawable_has_alpha(host->drawable))
-    rp_pixels_keep_alpha(&picture->image.view, &picture->result.view);
-  GeglBuffer *before = gimp_drawable_get_buffer(host->drawable);
-  GeglBuffer *exact = rp_pixels_replaced(before, &picture->result, &picture->mask.view, box);
-  g_object_unref(before);
-  GeglBuffer *shadow = gimp_drawable_get_shadow_buffer(host->drawable);
-  rp_pixels_write(shadow, &picture->result, &picture->mask.view, box);
-  g_object_unref(shadow);
-  gimp_drawable_merge_shadow(host->drawable, TRUE);
-  GeglBuffer *after = gimp_drawable_get_buffer(host->drawable);
-  gegl_buffer_copy(exact, box, GEGL_ABYSS_NONE, after, box);
-  g_object_unref(after);
-  g_object_unref(exact);
+gboolean rp_host_alpha_locked(const rp_host *host) {
+  return GIMP_IS_LAYER(host->drawable) && gimp_layer_get_lock_alpha(GIMP_LAYER(host->drawable)) &&
+         gimp_drawable_has_alpha(host->drawable);
+}
+
+GeglBuffer *rp_host_open_shadow(const rp_host *host) {
+  return gimp_drawable_get_shadow_buffer(host->drawable);
+}
+
+void rp_host_merge_shadow(const rp_host *host) { gimp_drawable_merge_shadow(host->drawable, TRUE); }
+
+void rp_host_updated(const rp_host *host, const GeglRectangle *box) {
   gimp_drawable_update(host->drawable, box->x, box->y, box->width, box->height);
 }
 
