@@ -11,6 +11,9 @@ import cv2
 import numpy as np
 from host import Host, Tap
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "lib"))
+import icc  # noqa: E402 - found by then
+
 FOLDERS = {"2": "2.10", "3": "3.0"}
 
 
@@ -52,6 +55,8 @@ def check_batch(host, tap, scripts):
         cv2.imwrite(str(folder / f"{name}.png"), pictures[name])
         cv2.imwrite(str(folder / f"{name}-mask.png"), mask)
     cv2.imwrite(str(folder / "unmasked.png"), checks())
+    profile = icc.rgb_profile(icc.WIDE, 1.8)
+    icc.embed(folder / "one.png", profile)
     orientation = "1" if host.name == "2" else '"angles"'
     output = host.run(f'(load "{scripts}/batch-folder.scm")',
                       f'(recede-batch "{folder}" "png" {orientation} 0 0)')
@@ -60,6 +65,7 @@ def check_batch(host, tap, scripts):
         good = filled is not None and not (filled == (0, 255, 0)).all(-1).any()
         tap.case(good and np.array_equal(filled[mask == 0], picture[mask == 0]),
                  f"batch-folder.scm fills {name}.png", output)
+    tap.case(icc.embedded(folder / "one-filled.png") == profile, "and keeps a profile")
     made = sorted(path.name for path in folder.glob("*-filled.png"))
     tap.case(made == ["one-filled.png", "two-filled.png"], "and nothing else", made)
 

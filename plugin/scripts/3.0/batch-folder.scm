@@ -15,6 +15,16 @@
       (gimp-image-select-item image CHANNEL-OP-REPLACE channel)
       (gimp-image-remove-channel image channel))))
 
+; gimp-file-save would leave the colour profile out.
+(define (recede-save image path suffix)
+  (let* ((export (cond ((string=? suffix ".png") file-png-export)
+                       ((string=? suffix ".jpg") file-jpeg-export)
+                       ((string=? suffix ".tif") file-tiff-export)
+                       (else #f))))
+    (if export
+      (export #:run-mode RUN-NONINTERACTIVE #:image image #:file path #:include-color-profile TRUE)
+      (gimp-file-save RUN-NONINTERACTIVE image path -1))))
+
 (define (recede-fill-by-mask stem suffix orientation slant tilt)
   (let* ((image (car (gimp-file-load RUN-NONINTERACTIVE (string-append stem suffix))))
          (layers (car (gimp-image-get-selected-drawables image))))
@@ -22,7 +32,7 @@
     (plug-in-recede-fill #:run-mode RUN-NONINTERACTIVE #:image image #:drawables layers
                          #:orientation orientation #:slant slant #:tilt tilt)
     (gimp-selection-none image)
-    (gimp-file-save RUN-NONINTERACTIVE image (string-append stem "-filled" suffix) -1)
+    (recede-save image (string-append stem "-filled" suffix) suffix)
     (gimp-image-delete image)))
 
 (define (recede-batch folder type orientation slant tilt)
