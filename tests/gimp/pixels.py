@@ -182,6 +182,32 @@ def check_same_as_command(host, tap, folder, command):
                  theirs is None else f"{(theirs != ours).any(-1).sum()} pixels differ")
 
 
+def check_mask(host, tap, folder):
+    """A layer mask is filled like a layer, and stays when its layer is filled."""
+    keep = "(gimp-image-select-item i CHANNEL-OP-REPLACE m)(gimp-selection-save i)"
+    for target in ("m", "d"):
+        stem = folder / f"mask-{target}"
+        output = host.run(
+            f'(define i (t-load "{folder}/picture-0.png"))', "(define d (t-layer i))",
+            f"(gimp-image-convert-precision i {host.precision('u8')})",
+            "(define m (car (gimp-layer-create-mask d ADD-MASK-COPY)))(gimp-layer-add-mask d m)",
+            keep, RECTANGLE, f'(t-save i "{stem}-before.xcf")',
+            host.fill(layer=target, orientation="angles", slant=35), keep,
+            f'(t-save i "{stem}-after.xcf")')
+        name = "a layer mask is filled" if target == "m" else "a layer with a mask is filled"
+        if not host.done:
+            tap.case(False, name, output)
+            continue
+        old, new = xcf.Image(f"{stem}-before.xcf"), xcf.Image(f"{stem}-after.xcf")
+        inside = np.zeros((HEIGHT, WIDTH), bool)
+        inside[24:44, 40:68] = True
+        masks, layers = ([(a.bytes != b.bytes).any(-1) for a, b in ((new.channels[0],
+                          old.channels[0]), (new.layers[0], old.layers[0]))])
+        changed, kept = (masks, layers) if target == "m" else (layers, masks)
+        tap.case(changed[inside].mean() > .5 and not changed[~inside].any() and not kept.any(),
+                 name, f"{changed[inside].mean()} {changed[~inside].sum()} {kept.sum()}")
+
+
 def check_synthesis(host, tap, folder):
     """A new image: the size asked for, the image's precision, the exemplar's colours."""
     for mode, precision, selected in (("rgb", "u8", False), ("graya", "u16", True),
@@ -218,6 +244,7 @@ def main():
     with Host(name, plugin) as host:
         check_table(host, tap, host.folder)
         check_new_layer(host, tap, host.folder)
+        check_mask(host, tap, host.folder)
         check_synthesis(host, tap, host.folder)
         check_same_as_command(host, tap, host.folder, command and Path(command).resolve())
     tap.plan()

@@ -1,4 +1,4 @@
-; Fills a rectangle of a picture and saves the result. GIMP 3.
+; Fills a rectangle of a picture and saves the result as PNG. GIMP 3.
 ;
 ;   gimp-console-3 -i --quit --batch-interpreter=plug-in-script-fu-eval \
 ;     -b '(load "fill-selection.scm")' \
@@ -14,5 +14,7 @@
     (gimp-image-select-rectangle image CHANNEL-OP-REPLACE x y width height)
     (plug-in-recede-fill #:run-mode RUN-NONINTERACTIVE #:image image #:drawables layers)
     (gimp-selection-none image)
-    (gimp-file-save RUN-NONINTERACTIVE image out -1)
+    ; gimp-file-save would leave the colour profile out.
+    (file-png-export #:run-mode RUN-NONINTERACTIVE #:image image #:file out
+                     #:include-color-profile TRUE)
     (gimp-image-delete image)))
