@@ -30,8 +30,8 @@ typedef struct effort {
 
 static const effort efforts[] = {
     [RECEDE_QUALITY_DRAFT] = {2, 30, 6, 2, 0, 2, 8},
-    [RECEDE_QUALITY_NORMAL] = {4, 60, 12, 2, 2, 4, 16},
-    [RECEDE_QUALITY_BEST] = {8, 100, 24, 4, 4, 6, 16},
+    [RECEDE_QUALITY_NORMAL] = {6, 60, 12, 2, 2, 4, 16},
+    [RECEDE_QUALITY_BEST] = {12, 100, 24, 4, 4, 6, 16},
 };
 
 static const effort *effort_of(const rc_descent *e) { return &efforts[e->params->quality]; }
