@@ -8,7 +8,14 @@ build=${RECEDE_BUILD:-$project/build}
 config=${XDG_CONFIG_HOME:-$HOME/.config}/GIMP
 # Where GIMP looks; its own variables name another profile.
 folder_of_2=${GIMP2_DIRECTORY:-$config/2.10}/plug-ins/recede
-folder_of_3=${GIMP3_DIRECTORY:-$config/3.0}/plug-ins/recede
+
+# GIMP 3.0 and 3.2 each have a folder, made when they are first started.
+folders_of_3() {
+  local profiles=("$config"/3.*)
+  [ -d "${profiles[0]}" ] || profiles=("$config/3.0")
+  [ -n "${GIMP3_DIRECTORY:-}" ] && profiles=("$GIMP3_DIRECTORY")
+  printf '%s/plug-ins/recede\n' "${profiles[@]}"
+}
 
 catalogues() { # FOLDER
   local language
@@ -32,7 +39,7 @@ put() {
 }
 
 install_all() {
-  local found=0 built
+  local found=0 built folder
   [ -e "$build/build.ninja" ] || meson setup "$build" "$project"
   ninja -C "$build"
   if [ -e "$build/plugin/gimp2/recede" ]; then
@@ -42,7 +49,9 @@ install_all() {
   # Built here where GIMP 3 is, else by the tests in their chroot.
   for built in "$build" "$project/build-gimp3"; do
     if [ -e "$built/plugin/gimp3/recede" ]; then
-      put 3 "$built/plugin/gimp3/recede" "$folder_of_3"
+      while read -r folder; do
+        put 3 "$built/plugin/gimp3/recede" "$folder"
+      done < <(folders_of_3)
       found=1
       break
     fi
@@ -55,7 +64,10 @@ install_all() {
 
 case "${1:-}" in
   install) install_all ;;
-  uninstall) rm -rf "$folder_of_2" "$folder_of_3" ;;
+  uninstall)
+    rm -rf "$folder_of_2"
+    folders_of_3 | xargs -d '\n' rm -rf
+    ;;
   *)
     echo "usage: install.sh install|uninstall" >&2
     exit 2

@@ -4,6 +4,7 @@ folder.
 
 scripts.py HOST PLUGIN PROJECT
 """
+import subprocess
 import sys
 from pathlib import Path
 
@@ -85,6 +86,21 @@ def check_install(host, tap, project, plugin):
     tap.case(not placed.parent.exists(), "uninstall takes it away")
 
 
+def check_versions(host, tap):
+    """Without a profile named, into that of every GIMP 3 the user has started."""
+    profiles = [host.folder / "config" / "GIMP" / version for version in ("3.0", "3.2")]
+    for profile in profiles:
+        profile.mkdir(parents=True)
+    del host.installing["GIMP3_DIRECTORY"]
+    said = subprocess.run([host.installer, "install"], env=host.installing, capture_output=True,
+                          text=True, check=False)
+    placed = [profile / "plug-ins" / "recede" for profile in profiles]
+    tap.case(all((folder / "recede").exists() for folder in placed),
+             "GIMP 3.0 and 3.2 each get it", said.stdout + said.stderr)
+    host.uninstall()
+    tap.case(not any(folder.exists() for folder in placed), "and lose it")
+
+
 def main():
     name, plugin, project = sys.argv[1:4]
     project = Path(project).resolve()
@@ -94,6 +110,8 @@ def main():
         check_fill(host, tap, scripts)
         check_batch(host, tap, scripts)
         check_install(host, tap, project, plugin)
+        if name == "3":
+            check_versions(host, tap)
     tap.plan()
 
 
