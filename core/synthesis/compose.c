@@ -11,7 +11,8 @@
  * leave .82^40 = .0004 of the error. */
 #define RELAXATION 1.82f
 #define SWEEPS 40
-/* Sources finer than this many px per px are sampled one level coarser. */
+/* Sources finer than this many px per px, the mean of both directions, are sampled one level
+ * coarser. */
 #define MIP_AT 1.6f
 
 typedef struct composition {
@@ -34,6 +35,7 @@ static void copy_value(const composition *c, rc_copy copy, int x, int y, float *
   const rc_chart *chart = &c->level->chart;
   rc_place place = rc_copy_place(chart, copy, rc_level_x(c->level, x), rc_level_y(c->level, y));
   float sx = place.x + chart->x0, sy = place.y + chart->y0, finer = place.ratio;
+  if (!chart->raised) finer *= sqrtf(finer); /* ratio across, ratio^2 along */
   int mip = 0;
   for (; mip + 1 < c->mip_count && finer > MIP_AT; mip++, finer *= .5f)
     sx = (sx + .5f) * .5f - .5f, sy = (sy + .5f) * .5f - .5f;

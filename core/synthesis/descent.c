@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "base/random.h"
+#include "synthesis/rest.h"
 #include "synthesis/search.h"
 #include "synthesis/start.h"
 #include "synthesis/trial.h"
@@ -159,7 +160,7 @@ static recede_status run_level(rc_context *context, rc_descent *e, int exponent,
 }
 
 recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
-  rc_level coarser, level;
+  rc_level coarser, level = {0};
   float gamma = e->params->engine_confidence ? CONFIDENCE_FALLOFF : 1.f;
   for (int exponent = e->level_count - 1; exponent >= 0; exponent--) {
     bool coarsest = exponent == e->level_count - 1;
@@ -174,5 +175,5 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
     coarser = level;
   }
   *finest = level;
-  return RECEDE_OK;
+  return rc_continue_rest(context, finest, rc_key((uint64_t)e->params->seed, 98, 0), &e->rest);
 }

@@ -17,6 +17,7 @@ typedef struct rc_descent {
   rc_mask flags[RC_MAX_LEVELS];
   rc_copy periods[RC_MOST_PERIODS]; /* px of the coarsest level */
   int period_count;
+  uint64_t rest; /* out: pixels that only continue what lies beside them */
 } rc_descent;
 
 /* Makes the finest level, its field settled into whole copies. Progress .1 .. .8. */

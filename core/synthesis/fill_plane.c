@@ -97,9 +97,9 @@ static recede_status choose_surface(rc_context *context, const rc_problem *probl
   return RECEDE_OK;
 }
 
-static void count_magnified(rc_context *context, const rc_level *level) {
+static void count_magnified(rc_context *context, const rc_descent *e, const rc_level *level) {
   recede_report *report = &context->report;
-  double missing = 0;
+  uint64_t missing = 0;
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
       if (!rc_level_is_target(level, x, y)) continue;
@@ -118,8 +118,14 @@ static void count_magnified(rc_context *context, const rc_level *level) {
     rc_warn(context,
             "%llu px had to be magnified (up to %.1f times): no source of their size exists.",
             (unsigned long long)report->magnified_pixels, report->largest_magnification);
-  if (missing > 0)
-    rc_warn(context, "%.0f px found no source and got the smooth tone alone.", missing);
+  if (e->rest > missing)
+    rc_warn(context,
+            "%llu px are too small or too large for any source and continue what is beside "
+            "them.",
+            (unsigned long long)(e->rest - missing));
+  if (missing)
+    rc_warn(context, "%llu px found no source and got the smooth tone alone.",
+            (unsigned long long)missing);
 }
 
 /* The guide itself, for the ablation: what the averaging of votes alone would give. */
@@ -169,7 +175,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(compose(context, &e, &finest, filled));
   RC_TRY(rc_stage(context, "detail", .93, .97));
   if (params->engine_detail) RC_TRY(rc_match_detail(context, &finest, filled));
-  count_magnified(context, &finest);
+  count_magnified(context, &e, &finest);
   return rc_tone_apply(context, &tone, &problem->flags, RC_TARGET, 1, filled);
 }
 

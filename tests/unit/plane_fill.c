@@ -270,6 +270,24 @@ static void synthesis_keeps_the_exemplar(void) {
   }
 }
 
+/* Near the horizon no whole patch of the exemplar is small enough: the texture goes on all the
+ * same.
+ */
+static void texture_reaches_the_horizon(void) {
+  task t =
+      task_new(picture_of_plane(96, 72, 1, RECEDE_U8, grains, 5, 64, 0), "slant=64 quality=draft");
+  task_synthesize(&t, 240, 240);
+  picture canvas = picture_new(240, 240, 1, RECEDE_U8);
+  double far = moments_of(&t.result, &canvas, false, (area){0, 5, 240, 15}, 0).deviation;
+  double known = moments_of(&t.image, &canvas, false, (area){0, 0, 96, 20}, 0).deviation;
+  g_test_message("deviation %.3f, exemplar's far end %.3f. %s", far, known, t.report.warning);
+  g_assert_cmpfloat(far, >, .2 * known);
+  g_assert_nonnull(strstr(t.report.warning, "continue what is beside them"));
+  g_assert_null(strstr(t.report.warning, "smooth tone alone"));
+  picture_clear(&canvas);
+  task_clear(&t);
+}
+
 static recede_surface surface_of(picture image, double slant) {
   task t = task_new(image, "surface=auto quality=draft engine-iterations=1");
   t.params.slant_deg = slant;
@@ -336,6 +354,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/plane/source", source_is_respected);
   g_test_add_func("/plane/drift", drift_leaves_no_seam);
   g_test_add_func("/plane/synthesis", synthesis_keeps_the_exemplar);
+  g_test_add_func("/plane/far", texture_reaches_the_horizon);
   g_test_add_func("/plane/surface", surface_is_told);
   g_test_add_func("/plane/bland", flowers_go_on);
   return g_test_run();
