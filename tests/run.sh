@@ -111,7 +111,7 @@ else
   if [ $fast = 0 ] && [ ${#names[@]} = 0 ] && [ -e plugin/gimp3 ]; then gimp3; fi
   if [ $ci = 1 ]; then
     sanitized sanitize
-    step packages-fuzz install_packages fuzz && step fuzz tests/fuzz/run.sh 20
+    step packages-fuzz install_packages fuzz && step fuzz tests/fuzz/run.sh 20 1
   fi
 fi
 /usr/bin/python3 tests/lib/summary.py "$logs"

@@ -1,5 +1,5 @@
 #!/bin/bash
-# `./dev fuzz [SECONDS]`: each target for so long (60). What it has found is kept in out/fuzz and
+# `./dev fuzz [SECONDS [SEED]]`: each target for so long (60); without a seed, by chance. What it has found is kept in out/fuzz and
 # used again; an input that breaks something is written there, and the target fails.
 set -euo pipefail
 
@@ -8,7 +8,7 @@ project=$PWD # used by common.sh
 # shellcheck source=tests/lib/common.sh
 . tests/lib/common.sh
 
-seconds=${1:-60}
+seconds=${1:-60} seed=${2:-0}
 targets=(params fill)
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 
@@ -22,8 +22,8 @@ for target in "${targets[@]}"; do
   found=$project/out/fuzz/$target
   mkdir -p "$found"
   echo "== $target, $seconds s"
-  if ! "build-fuzz/tests/fuzz/fuzz-$target" -max_total_time="$seconds" -max_len=6000 -timeout=60 \
-    -len_control=0 -artifact_prefix="$project/out/fuzz/$target-" "$found" \
+  if ! "build-fuzz/tests/fuzz/fuzz-$target" -max_total_time="$seconds" -seed="$seed" \
+    -max_len=6000 -timeout=60 -len_control=0 -artifact_prefix="$project/out/fuzz/$target-" "$found" \
     >"$project/out/fuzz/$target.log" 2>&1; then
     failed=1
     grep -E 'ERROR|SUMMARY|Test unit written' "$project/out/fuzz/$target.log" || true
