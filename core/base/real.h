@@ -35,6 +35,18 @@ static inline float rc_exp2(float v) {
   return (float)(e * (double)power);
 }
 
+/* floorf and roundf without calls into the C library, which is what a compiler makes of them for
+ * plain x86-64. rc_floor: |v| < 2^24. */
+static inline int rc_floor(float v) {
+  int whole = (int)v;
+  return whole - (v < (float)whole);
+}
+static inline float rc_round(float v) {
+  if (!(v > -8388608.f && v < 8388608.f)) return v; /* whole already, or NaN */
+  float whole = (float)(int)v, rest = v - whole;
+  return whole + (float)((rest >= .5f) - (rest <= -.5f));
+}
+
 static inline float rc_exp(float v) { return rc_exp2(v * 1.44269504f); }
 
 #endif

@@ -75,7 +75,7 @@ static inline void rc_copy_jacobian(const rc_chart *chart, rc_copy copy, const r
 
 /* Eighth-octave steps: 4.4 % off at the most, below what the eye takes for another size. */
 static inline float rc_scale_step(float ratio) {
-  return ratio > .957f && ratio < 1.045f ? 1.f : rc_exp2(roundf(8.f * rc_log2(ratio)) / 8.f);
+  return ratio > .957f && ratio < 1.045f ? 1.f : rc_exp2(rc_round(8.f * rc_log2(ratio)) / 8.f);
 }
 
 /* The copy that takes target (x, y) from source (to_x, to_y), all relative to the chart's origin.
@@ -86,7 +86,7 @@ static inline rc_copy rc_copy_between(const rc_chart *chart, float x, float y, f
   float there = 1.f + chart->lx * to_x + chart->ly * to_y;
   if (!chart->raised) return (rc_copy){to_x / there - x / w, to_y / there - y / w, 0.f};
   float r = rc_scale_step(there / w);
-  if (r == 1.f) return (rc_copy){roundf(to_x - x), roundf(to_y - y), 1.f};
+  if (r == 1.f) return (rc_copy){rc_round(to_x - x), rc_round(to_y - y), 1.f};
   return (rc_copy){to_x - r * x, to_y - r * y, r};
 }
 

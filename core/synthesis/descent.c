@@ -79,14 +79,15 @@ static recede_status settle(rc_context *context, const rc_descent *e, rc_level *
 /* Scratch of a level. */
 typedef struct workspace {
   rc_copy *old;
-  uint32_t *guide;
-  float *usage;
+  float *usage; /* NULL: sources cost nothing here */
 } workspace;
 
-static recede_status workspace_new(rc_context *context, const rc_level *level, workspace *scratch) {
-  size_t box = (size_t)level->box_w * (size_t)level->box_h;
-  RC_TRY(RC_NEW(context, box, &scratch->old));
-  RC_TRY(RC_NEW(context, box, &scratch->guide));
+static recede_status workspace_new(rc_context *context, const rc_descent *e, int exponent,
+                                   const rc_level *level, workspace *scratch) {
+  *scratch = (workspace){NULL, NULL};
+  RC_TRY(RC_NEW(context, (size_t)level->box_w * (size_t)level->box_h, &scratch->old));
+  /* The finest level refines what the coarser ones have decided. */
+  if (!e->params->engine_usage || !exponent) return RECEDE_OK;
   return RC_NEW(context, (size_t)level->width * (size_t)level->height, &scratch->usage);
 }
 
@@ -96,14 +97,11 @@ static recede_status iterate(rc_context *context, const rc_descent *e, int expon
   int iterations = iterations_at(e, exponent);
   bool coarsest = exponent == e->level_count - 1;
   for (int i = 0; i < iterations; i++) {
-    if (i || !coarsest) RC_TRY(rc_vote(context, level, scratch->guide));
+    if (i || !coarsest) RC_TRY(rc_vote(context, level));
     for (int pass = 0; pass < PASSES; pass++) {
       rc_search search = search_of(e, exponent, trial, i, pass);
-      /* The finest level refines what the coarser ones have decided. */
-      if (e->params->engine_usage && exponent > 0) {
-        RC_TRY(rc_usage_prices(context, level, scratch->usage));
-        search.usage = scratch->usage;
-      }
+      search.usage = scratch->usage;
+      if (scratch->usage) RC_TRY(rc_usage_prices(context, level, scratch->usage));
       RC_TRY(rc_search_pass(context, level, &search, scratch->old));
     }
     RC_TRY(rc_progress(context, (trial + (double)(i + 1) / iterations) / trials));
@@ -147,13 +145,13 @@ static recede_status run_coarsest(rc_context *context, rc_descent *e, rc_level *
 static recede_status run_level(rc_context *context, rc_descent *e, int exponent, rc_level *level) {
   workspace scratch;
   rc_block *mark = rc_mark(context);
-  RC_TRY(workspace_new(context, level, &scratch));
+  RC_TRY(workspace_new(context, e, exponent, level, &scratch));
   if (exponent == e->level_count - 1)
     RC_TRY(run_coarsest(context, e, level, &scratch));
   else
     RC_TRY(iterate(context, e, exponent, 0, 1, level, &scratch));
   bool untouched = !iterations_at(e, exponent);
-  if (untouched) RC_TRY(rc_vote(context, level, scratch.guide));
+  if (untouched) RC_TRY(rc_vote(context, level));
   if (exponent == 0) RC_TRY(settle(context, e, level, scratch.old, untouched));
   rc_release(context, mark);
   return RECEDE_OK;

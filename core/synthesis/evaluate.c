@@ -41,13 +41,21 @@ static int32_t unpack_at_border(const rc_level *level, int x, int y, rc_patch *p
 
 void rc_query_init(rc_query *query) { memset(query, 0, sizeof *query); }
 
-void rc_query_set(const rc_level *level, int x, int y, rc_query *query) {
+static void unpack(const rc_level *level, rc_query *query) {
+  int x = query->px, y = query->py;
   bool inside = x >= RC_PATCH_RADIUS && y >= RC_PATCH_RADIUS &&
                 x < level->width - RC_PATCH_RADIUS && y < level->height - RC_PATCH_RADIUS;
   int32_t sum =
       inside ? unpack_inside(level, (size_t)y * (size_t)level->width + (size_t)x, &query->patch)
              : unpack_at_border(level, x, y, &query->patch);
   query->per_weight = sum ? 1.f / (3.f * (float)sum) : 0.f;
+  query->unpacked = true;
+}
+
+void rc_query_set(const rc_level *level, int x, int y, rc_query *query) {
+  query->px = x;
+  query->py = y;
+  query->unpacked = false;
   query->x = rc_level_x(level, x);
   query->y = rc_level_y(level, y);
   int c = level->classes[rc_level_at(level, x, y)];
@@ -57,18 +65,20 @@ void rc_query_set(const rc_level *level, int x, int y, rc_query *query) {
 
 float rc_place_price(float variance, const rc_place *place, float low, float high) {
   if (place->beyond || !(place->ratio >= low && place->ratio <= high)) return RC_NO_COST;
-  float octaves = 1.5f * rc_log2(place->ratio), price = 0;
+  float log2_ratio = rc_log2(place->ratio), octaves = 1.5f * log2_ratio, price = 0;
   if (place->mismatch != 1.f) {
     if (!(place->mismatch < RC_MOST_MISMATCH && place->mismatch > 1.f / RC_MOST_MISMATCH))
       return RC_NO_COST;
-    float off = rc_log2(place->mismatch);
+    /* A copy of scale 1 is off by all of its ratio. */
+    float off = place->mismatch == place->ratio ? log2_ratio : rc_log2(place->mismatch);
     price = RC_PRICE_MISMATCH * off * off;
   }
   price += (octaves < 0.f ? RC_PRICE_COARSE : RC_PRICE_FINE) * octaves * octaves;
   return variance * price;
 }
 
-static int32_t fixed(float value) { return (int32_t)floorf(value * 65536.f + .5f); }
+/* Footprints that fit reach 64 px per px at the most. */
+static int32_t fixed(float value) { return rc_floor(value * 65536.f + .5f); }
 
 /* Whether all of a footprint lies in a square of room px around its centre's pixel. A pixel's index
  * is floor(fraction + .5 + offset), fraction < 1; .001 covers the fixed point's rounding. False for
@@ -97,30 +107,14 @@ static bool set_footprint(const rc_level *level, const rc_chart *chart, rc_copy 
   return true;
 }
 
-float rc_query_cost(const rc_level *level, const rc_kernels *kernels, const rc_query *query,
-                    rc_copy copy, float limit) {
+float rc_query_cost(const rc_level *level, const rc_kernels *kernels, rc_query *query, rc_copy copy,
+                    const rc_place *place, float limit) {
   rc_footprint footprint;
-  rc_place place = rc_copy_place(&level->chart, copy, query->x, query->y);
-  float price = rc_place_price(level->variance, &place, query->low, query->high);
-  if (price >= limit || !set_footprint(level, &level->chart, copy, &place, &footprint))
+  float price = rc_place_price(level->variance, place, query->low, query->high);
+  if (price >= limit || !set_footprint(level, &level->chart, copy, place, &footprint))
     return RC_NO_COST;
+  if (!query->unpacked) unpack(level, query);
   float most = query->per_weight > 0.f ? (limit - price) / query->per_weight : 0.f;
   uint32_t stop = most < 4e9f ? (uint32_t)most + 1u : 4000000000u;
   return price + (float)kernels->distance(&query->patch, &footprint, stop) * query->per_weight;
-}
-
-bool rc_place_at(const rc_level *level, const rc_place *place, size_t *at) {
-  float x = place->x + level->chart.x0 + .5f, y = place->y + level->chart.y0 + .5f;
-  if (place->beyond ||
-      !(x >= 0.f && y >= 0.f && x < (float)level->width && y < (float)level->height))
-    return false;
-  *at = (size_t)(int)y * (size_t)level->width + (size_t)(int)x;
-  return true;
-}
-
-bool rc_place_pixel(const rc_level *level, const rc_place *place, uint32_t *pixel) {
-  size_t at;
-  if (!rc_place_at(level, place, &at)) return false;
-  *pixel = level->pixels[at];
-  return level->room[at] > 0;
 }

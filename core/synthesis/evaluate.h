@@ -21,20 +21,38 @@ typedef struct rc_query {
   float per_weight; /* 1 / (3 * sum of weights) */
   float x, y;       /* relative to the chart's origin */
   float low, high;  /* ratios allowed here */
+  int32_t px, py;
+  bool unpacked; /* patch and per_weight are set: not before the first distance is asked for */
 } rc_query;
 
 /* Once per query, before the first set: the padding lanes must weigh nothing. */
 void rc_query_init(rc_query *query);
 void rc_query_set(const rc_level *level, int x, int y, rc_query *query);
-/* Cost of the copy there, or any value >= limit (RC_NO_COST when it is not allowed: wrong scale, or
+/* Cost of the copy, whose place it is, or any value >= limit (RC_NO_COST when it is not allowed: wrong scale, or
  * its footprint is not wholly source). */
-float rc_query_cost(const rc_level *level, const rc_kernels *kernels, const rc_query *query,
-                    rc_copy copy, float limit);
+float rc_query_cost(const rc_level *level, const rc_kernels *kernels, rc_query *query, rc_copy copy,
+                    const rc_place *place, float limit);
+/* Where a copy takes the query's pixel from. */
+static inline rc_place rc_query_place(const rc_level *level, const rc_query *query, rc_copy copy) {
+  return rc_copy_place(&level->chart, copy, query->x, query->y);
+}
 /* Price of ratio and mismatch alone; RC_NO_COST outside the allowed range. */
 float rc_place_price(float variance, const rc_place *place, float low, float high);
 /* The index of the level's pixel nearest to a place; false when it lies outside the picture. */
-bool rc_place_at(const rc_level *level, const rc_place *place, size_t *at);
+static inline bool rc_place_at(const rc_level *level, const rc_place *place, size_t *at) {
+  float x = place->x + level->chart.x0 + .5f, y = place->y + level->chart.y0 + .5f;
+  if (place->beyond ||
+      !(x >= 0.f && y >= 0.f && x < (float)level->width && y < (float)level->height))
+    return false;
+  *at = (size_t)(int)y * (size_t)level->width + (size_t)(int)x;
+  return true;
+}
 /* Its colour; false when it is no source. */
-bool rc_place_pixel(const rc_level *level, const rc_place *place, uint32_t *pixel);
+static inline bool rc_place_pixel(const rc_level *level, const rc_place *place, uint32_t *pixel) {
+  size_t at;
+  if (!rc_place_at(level, place, &at) || !level->room[at]) return false;
+  *pixel = level->pixels[at];
+  return true;
+}
 
 #endif

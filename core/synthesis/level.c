@@ -127,8 +127,8 @@ static recede_status sort_sources(rc_context *context, rc_level *level) {
 
 /* Sources with w in low..high: a run of level->order. */
 static void bins_between(const rc_level *level, float low, float high, int *begin, int *end) {
-  int from = (int)floorf((rc_log2(low) - level->bin_log2_w0) * RC_BINS_PER_OCTAVE);
-  int to = (int)floorf((rc_log2(high) - level->bin_log2_w0) * RC_BINS_PER_OCTAVE) + 1;
+  int from = rc_floor((rc_log2(low) - level->bin_log2_w0) * RC_BINS_PER_OCTAVE);
+  int to = rc_floor((rc_log2(high) - level->bin_log2_w0) * RC_BINS_PER_OCTAVE) + 1;
   from = from < 0 ? 0 : from > level->bins ? level->bins : from;
   to = to < from ? from : to > level->bins ? level->bins : to;
   *begin = level->first[from];
@@ -206,17 +206,20 @@ static void set_ranges(rc_level *level, const class_extent extents[RC_MAX_CLASSE
   }
 }
 
-bool rc_level_random_source(const rc_level *level, float x, float y, int class_index, uint64_t bits,
-                            int *source_x, int *source_y) {
-  int begin, end;
+rc_sources rc_level_sources(const rc_level *level, float x, float y, int class_index) {
+  rc_sources sources;
   float w = rc_level_w(level, x, y);
   bins_between(level, w * level->ranges.low[class_index], w * level->ranges.high[class_index],
-               &begin, &end);
-  if (begin == end) return false;
-  int32_t i = level->order[begin + (int)rc_below((uint32_t)bits, (uint32_t)(end - begin))];
-  *source_x = i % level->width;
-  *source_y = i / level->width;
-  return true;
+               &sources.begin, &sources.end);
+  return sources;
+}
+
+void rc_level_random_source(const rc_level *level, rc_sources sources, uint64_t bits, int *x,
+                            int *y) {
+  uint32_t count = (uint32_t)(sources.end - sources.begin);
+  int32_t i = level->order[sources.begin + (int)rc_below((uint32_t)bits, count)];
+  *x = i % level->width;
+  *y = i / level->width;
 }
 
 recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_mask *flags,

@@ -60,9 +60,14 @@ static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
 recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_mask *flags,
                            const rc_chart *chart, float gamma, float gain, const rc_ranges *ranges,
                            rc_level *level);
-/* A random source pixel of the right scale for a target pixel of relative position (x, y) and
- * class; false when there is none. */
-bool rc_level_random_source(const rc_level *level, float x, float y, int class_index, uint64_t bits,
-                            int *source_x, int *source_y);
+/* The source pixels of the right scale for a target pixel of relative position (x, y) and class: a
+ * run of level->order, empty when there are none. */
+typedef struct rc_sources {
+  int begin, end;
+} rc_sources;
+rc_sources rc_level_sources(const rc_level *level, float x, float y, int class_index);
+/* A random one of a run that is not empty. */
+void rc_level_random_source(const rc_level *level, rc_sources sources, uint64_t bits, int *x,
+                            int *y);
 
 #endif

@@ -48,28 +48,45 @@ static void find_neighbours(const scan *s, rc_box tile, pixel_state *state) {
   }
 }
 
-static float usage_price(const scan *s, const pixel_state *state, rc_copy copy) {
+static float usage_price(const scan *s, const rc_place *place) {
   size_t at;
-  if (!s->search->usage || isnan(copy.a)) return 0.f;
-  rc_place place = rc_copy_place(&s->level->chart, copy, state->query.x, state->query.y);
-  return rc_place_at(s->level, &place, &at) ? s->search->usage[at] : 0.f;
+  return s->search->usage && rc_place_at(s->level, place, &at) ? s->search->usage[at] : 0.f;
 }
 
 /* What a copy costs besides its distance. */
-static float price_of(const scan *s, const pixel_state *state, rc_copy copy) {
-  return state->price * (float)differing(state, copy) + usage_price(s, state, copy);
+static float price_of(const scan *s, const pixel_state *state, rc_copy copy,
+                      const rc_place *place) {
+  float usage = isnan(copy.a) ? 0.f : usage_price(s, place);
+  return state->price * (float)differing(state, copy) + usage;
 }
 
-static void try_copy(const scan *s, pixel_state *state, rc_copy copy, float must_beat) {
-  if (rc_same_copy(copy, state->best) || isnan(copy.a)) return;
-  float price = price_of(s, state, copy);
+/* Whether the copy is worse than the best: it stays so, for the best only gets better. */
+static bool fails(const scan *s, pixel_state *state, rc_copy copy, float must_beat) {
+  rc_place place = rc_query_place(s->level, &state->query, copy);
+  float price = price_of(s, state, copy, &place);
   float limit = state->total * must_beat - price;
-  if (!(limit > 0.f)) return;
-  float base = rc_query_cost(s->level, s->search->kernels, &state->query, copy, limit);
-  if (base >= limit) return;
+  if (!(limit > 0.f)) return true;
+  float base = rc_query_cost(s->level, s->search->kernels, &state->query, copy, &place, limit);
+  if (base >= limit) return true;
   state->best = copy;
   state->base = base;
   state->total = base + price;
+  return false;
+}
+
+static bool try_copy(const scan *s, pixel_state *state, rc_copy copy, float must_beat) {
+  return !rc_same_copy(copy, state->best) && !isnan(copy.a) && fails(s, state, copy, must_beat);
+}
+
+/* Neighbours mostly have the same copy: one that failed needs no second try. */
+static void try_neighbours(const scan *s, pixel_state *state) {
+  bool failed[4] = {false};
+  for (int i = 0; i < state->neighbour_count; i++) {
+    bool known = false;
+    for (int k = 0; k < i && !known; k++)
+      known = failed[k] && rc_same_copy(state->neighbours[k], state->neighbours[i]);
+    failed[i] = known || try_copy(s, state, state->neighbours[i], 1.f);
+  }
 }
 
 static rc_copy copy_from(const rc_level *level, const pixel_state *state, float x, float y) {
@@ -80,7 +97,7 @@ static void try_nearby(const scan *s, pixel_state *state) {
   const rc_level *level = s->level;
   int n = 0;
   for (int radius = s->search->local_radius; radius >= 2; radius /= 2, n++) {
-    rc_place place = rc_copy_place(&level->chart, state->best, state->query.x, state->query.y);
+    rc_place place = rc_query_place(level, &state->query, state->best);
     if (place.beyond) return;
     uint64_t bits = rc_random(s->search->key, (uint32_t)state->x, (uint32_t)state->y, (uint32_t)n);
     int dx = (int)rc_below((uint32_t)bits, 2u * (uint32_t)radius + 1) - radius;
@@ -94,10 +111,13 @@ static void try_nearby(const scan *s, pixel_state *state) {
 static void try_anywhere(const scan *s, pixel_state *state) {
   const rc_level *level = s->level;
   int x, y, c = level->classes[rc_level_at(level, state->x, state->y)];
+  if (!s->search->anywhere) return;
+  rc_sources sources = rc_level_sources(level, state->query.x, state->query.y, c);
+  if (sources.begin == sources.end) return;
   for (int n = 0; n < s->search->anywhere; n++) {
     uint64_t bits =
         rc_random(s->search->key, (uint32_t)state->x, (uint32_t)state->y, 100u + (uint32_t)n);
-    if (!rc_level_random_source(level, state->query.x, state->query.y, c, bits, &x, &y)) return;
+    rc_level_random_source(level, sources, bits, &x, &y);
     try_copy(s, state, copy_from(level, state, rc_level_x(level, x), rc_level_y(level, y)),
              CHANCE_MUST_BEAT);
   }
@@ -108,7 +128,7 @@ static rc_copy shifted_by_period(const rc_level *level, const pixel_state *state
   if (!level->chart.raised) return (rc_copy){from.a + period.a, from.b + period.b, 0.f};
   rc_chart flat = level->chart;
   flat.raised = false;
-  rc_place place = rc_copy_place(&level->chart, from, state->query.x, state->query.y);
+  rc_place place = rc_query_place(level, &state->query, from);
   rc_place moved = rc_copy_place(&flat, period, place.x, place.y);
   return moved.beyond ? from : copy_from(level, state, moved.x, moved.y);
 }
@@ -132,12 +152,13 @@ static void improve_pixel(const scan *s, rc_box tile, pixel_state *state) {
   find_neighbours(s, tile, state);
   state->best = level->field[at];
   state->base = level->cost[at];
+  rc_place place = rc_query_place(level, &state->query, state->best);
   if (s->search->recost)
     state->base = isnan(state->best.a) ? RC_NO_COST
                                        : rc_query_cost(level, s->search->kernels, &state->query,
-                                                       state->best, RC_NO_COST);
-  state->total = state->base + price_of(s, state, state->best);
-  for (int i = 0; i < state->neighbour_count; i++) try_copy(s, state, state->neighbours[i], 1.f);
+                                                       state->best, &place, RC_NO_COST);
+  state->total = state->base + price_of(s, state, state->best, &place);
+  try_neighbours(s, state);
   try_anywhere(s, state);
   try_periods(s, state);
   try_nearby(s, state);

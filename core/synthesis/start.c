@@ -27,7 +27,8 @@ typedef struct choice {
 
 static void consider(const ring *r, choice *c, rc_copy copy) {
   if (isnan(copy.a) || rc_same_copy(copy, c->best)) return;
-  float cost = rc_query_cost(r->level, r->search->kernels, &c->query, copy, c->cost);
+  rc_place place = rc_query_place(r->level, &c->query, copy);
+  float cost = rc_query_cost(r->level, r->search->kernels, &c->query, copy, &place, c->cost);
   if (cost >= c->cost) return;
   c->cost = cost;
   c->best = copy;
@@ -46,9 +47,11 @@ static void consider_neighbours(const ring *r, choice *c, int x, int y) {
 static void consider_chance(const ring *r, choice *c, int x, int y) {
   const rc_level *level = r->level;
   int sx, sy, class_index = level->classes[rc_level_at(level, x, y)];
+  rc_sources sources = rc_level_sources(level, c->query.x, c->query.y, class_index);
+  if (sources.begin == sources.end) return;
   for (int n = 0; n < r->search->anywhere; n++) {
     uint64_t bits = rc_random(r->search->key, (uint32_t)x, (uint32_t)y, (uint32_t)n);
-    if (!rc_level_random_source(level, c->query.x, c->query.y, class_index, bits, &sx, &sy)) return;
+    rc_level_random_source(level, sources, bits, &sx, &sy);
     consider(r, c,
              rc_copy_between(&level->chart, c->query.x, c->query.y, rc_level_x(level, sx),
                              rc_level_y(level, sy)));
@@ -60,7 +63,7 @@ static void refine(const ring *r, choice *c, int x, int y) {
   for (int radius = REFINE_FROM_PX, n = 0; radius; radius /= 2)
     for (int k = 0; k < 4; k++, n++) {
       if (isnan(c->best.a)) return;
-      rc_place place = rc_copy_place(&level->chart, c->best, c->query.x, c->query.y);
+      rc_place place = rc_query_place(level, &c->query, c->best);
       uint64_t bits = rc_random(r->search->key, (uint32_t)x, (uint32_t)y, 500u + (uint32_t)n);
       int dx = (int)rc_below((uint32_t)bits, 2u * (uint32_t)radius + 1) - radius;
       int dy = (int)rc_below((uint32_t)(bits >> 32), 2u * (uint32_t)radius + 1) - radius;

@@ -1,7 +1,6 @@
 #include "synthesis/vote.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -15,7 +14,7 @@
 typedef struct ballot {
   rc_level *level;
   float *weight; /* of each box pixel's patch */
-  uint32_t *guide;
+  float scale;   /* of the costs: weights are its exponentials */
 } ballot;
 
 static int by_value(const void *a, const void *b) {
@@ -39,47 +38,58 @@ static float upper_quartile(const rc_level *level) {
   return fmaxf(sample[count * 3 / 4], 1e-3f);
 }
 
-static void set_vote_weights(const ballot *b) {
+static void weight_row(void *user, int item, int thread) {
+  const ballot *b = user;
   const rc_level *level = b->level;
-  float scale = -1.f / (2.f * SHARPNESS * upper_quartile(level));
-  for (int y = level->box.y0; y < level->box.y1; y++)
-    for (int x = level->box.x0; x < level->box.x1; x++) {
-      size_t at = rc_level_at(level, x, y);
-      bool votes = rc_level_is_target(level, x, y) && !isnan(level->field[at].a);
-      float trust = level->weight[(size_t)y * (size_t)level->width + (size_t)x];
-      /* The floor keeps a pixel whose patches all fit badly from having no vote at all. */
-      b->weight[at] = votes ? trust * fmaxf(rc_exp(scale * level->cost[at]), 1e-6f) : 0.f;
-    }
+  int y = level->box.y0 + item;
+  (void)thread;
+  for (int x = level->box.x0; x < level->box.x1; x++) {
+    size_t at = rc_level_at(level, x, y);
+    bool votes = rc_level_is_target(level, x, y) && !isnan(level->field[at].a);
+    float trust = level->weight[(size_t)y * (size_t)level->width + (size_t)x];
+    /* The floor keeps a pixel whose patches all fit badly from having no vote at all. */
+    b->weight[at] = votes ? trust * fmaxf(rc_exp(b->scale * level->cost[at]), 1e-6f) : 0.f;
+  }
 }
+
+/* What a copy proposes for a pixel. */
+typedef struct proposal {
+  rc_copy copy;
+  uint32_t colour;
+  bool valid;
+} proposal;
 
 static void vote_pixel(const ballot *b, int x, int y) {
   const rc_level *level = b->level;
   float sum[4] = {0, 0, 0, 0};
-  size_t own = rc_level_at(level, x, y);
+  proposal p = {.copy = {NAN, NAN, NAN}};
   for (int dy = -RC_PATCH_RADIUS; dy <= RC_PATCH_RADIUS; dy += STRIDE)
     for (int dx = -RC_PATCH_RADIUS; dx <= RC_PATCH_RADIUS; dx += STRIDE) {
       int px = x + dx, py = y + dy;
-      uint32_t colour;
       if (px < level->box.x0 || px >= level->box.x1 || py < level->box.y0 || py >= level->box.y1)
         continue;
       size_t at = rc_level_at(level, px, py);
-      if (!(b->weight[at] > 0.f)) continue;
-      rc_place place = rc_copy_place(&level->chart, level->field[at], rc_level_x(level, x),
-                                     rc_level_y(level, y));
-      if (!rc_place_pixel(level, &place, &colour)) continue;
       float weight = b->weight[at];
-      sum[0] += weight * (float)(colour & 255);
-      sum[1] += weight * (float)(colour >> 8 & 255);
-      sum[2] += weight * (float)(colour >> 16 & 255);
+      if (!(weight > 0.f)) continue;
+      if (!rc_same_copy(level->field[at], p.copy)) { /* neighbours mostly agree */
+        p.copy = level->field[at];
+        rc_place place =
+            rc_copy_place(&level->chart, p.copy, rc_level_x(level, x), rc_level_y(level, y));
+        p.valid = rc_place_pixel(level, &place, &p.colour);
+      }
+      if (!p.valid) continue;
+      sum[0] += weight * (float)(p.colour & 255);
+      sum[1] += weight * (float)(p.colour >> 8 & 255);
+      sum[2] += weight * (float)(p.colour >> 16 & 255);
       sum[3] += weight;
     }
-  uint32_t colour = level->pixels[(size_t)y * (size_t)level->width + (size_t)x];
   if (sum[3] > 0.f)
-    colour = (uint32_t)(sum[0] / sum[3] + .5f) | (uint32_t)(sum[1] / sum[3] + .5f) << 8 |
-             (uint32_t)(sum[2] / sum[3] + .5f) << 16;
-  b->guide[own] = colour;
+    level->pixels[(size_t)y * (size_t)level->width + (size_t)x] =
+        (uint32_t)(sum[0] / sum[3] + .5f) | (uint32_t)(sum[1] / sum[3] + .5f) << 8 |
+        (uint32_t)(sum[2] / sum[3] + .5f) << 16;
 }
 
+/* Only sources are read, which are no target pixels: the guide can be written in place. */
 static void vote_row(void *user, int item, int thread) {
   const ballot *b = user;
   int y = b->level->box.y0 + item;
@@ -88,17 +98,12 @@ static void vote_row(void *user, int item, int thread) {
     if (rc_level_is_target(b->level, x, y)) vote_pixel(b, x, y);
 }
 
-recede_status rc_vote(rc_context *context, rc_level *level, uint32_t *guide) {
-  ballot b = {level, NULL, guide};
+recede_status rc_vote(rc_context *context, rc_level *level) {
+  ballot b = {level, NULL, -1.f / (2.f * SHARPNESS * upper_quartile(level))};
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, (size_t)level->box_w * (size_t)level->box_h, &b.weight));
-  set_vote_weights(&b);
+  RC_TRY(rc_parallel(context, level->box_h, weight_row, &b));
   RC_TRY(rc_parallel(context, level->box_h, vote_row, &b));
-  for (int y = level->box.y0; y < level->box.y1; y++)
-    for (int x = level->box.x0; x < level->box.x1; x++)
-      if (rc_level_is_target(level, x, y))
-        level->pixels[(size_t)y * (size_t)level->width + (size_t)x] =
-            guide[rc_level_at(level, x, y)];
   rc_release(context, mark);
   return RECEDE_OK;
 }

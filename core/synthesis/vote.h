@@ -5,8 +5,8 @@
 
 #include "synthesis/level.h"
 
-/* Replaces the target's pixels. guide is scratch of box_w * box_h. */
-recede_status rc_vote(rc_context *context, rc_level *level, uint32_t *guide);
+/* Replaces the target's pixels. */
+recede_status rc_vote(rc_context *context, rc_level *level);
 /* Takes the field of the coarser level over. */
 void rc_field_from_coarser(rc_level *level, const rc_level *coarser);
 
