@@ -21,14 +21,27 @@ typedef struct composition {
   const rc_image *mips;
   int mip_count, channels;
   rc_image *residual;
-  float *value;      /* the copies' own values, box by channels */
-  float *correction; /* what the join adds */
+  float *value; /* the copies' own values, box by channels */
+  /* The join's unknowns are kept so that a sweep over one colour runs through memory in order: of
+   * each row first the even columns, then the odd ones, half_w of each, channel by channel. */
+  int half_w;
+  float *correction; /* what the join adds; NULL: there is none */
   float *drive;      /* right-hand side of the join */
   uint8_t *edges;    /* how many neighbours a pixel has */
   int colour;        /* of the red-black sweep */
 } composition;
 
 static const int step_x[4] = {-1, 1, 0, 0}, step_y[4] = {0, 0, -1, 1};
+
+/* The first of the columns of one parity; pads surround them on all sides, so that no border has to
+ * be asked for. */
+static size_t half_row(const composition *c, int row, int parity, int channel) {
+  size_t line = (size_t)((row + 1) * 2 + parity) * (size_t)c->channels + (size_t)channel;
+  return line * (size_t)(c->half_w + 2) + 1;
+}
+static size_t half_edges(const composition *c, int row, int parity) {
+  return (size_t)(row * 2 + parity) * (size_t)c->half_w;
+}
 
 /* The texture that a copy puts at (x, y). */
 static void copy_value(const composition *c, rc_copy copy, int x, int y, float *value) {
@@ -90,51 +103,76 @@ static void drive_row(void *user, int item, int thread) {
   (void)thread;
   for (int x = level->box.x0; x < level->box.x1; x++) {
     size_t at = rc_level_at(level, x, y);
-    c->edges[at] = 0;
+    int parity = (x - level->box.x0) & 1, column = (x - level->box.x0) / 2;
+    uint8_t *edges = c->edges + half_edges(c, item, parity) + column;
+    float drive[3] = {0, 0, 0};
     if (!rc_level_is_target(level, x, y) || isnan(level->field[at].a)) continue;
     for (int e = 0; e < 4; e++) {
       int nx = x + step_x[e], ny = y + step_y[e];
       if (!rc_inside(level->width, level->height, nx, ny)) continue;
       if (!(level->flags[(size_t)ny * (size_t)level->width + (size_t)nx] & (RC_TARGET | RC_KNOWN)))
         continue;
-      c->edges[at]++;
-      add_edge(c, x, y, nx, ny, c->value + at * (size_t)c->channels,
-               c->drive + at * (size_t)c->channels);
+      ++*edges;
+      add_edge(c, x, y, nx, ny, c->value + at * (size_t)c->channels, drive);
     }
+    for (int k = 0; k < c->channels; k++)
+      c->drive[half_row(c, item, parity, k) + (size_t)column] = drive[k];
   }
 }
 
-static void relax_row(void *user, int item, int thread) {
+/* Pixels without edges are none of the join's. */
+static void relax(int count, const uint8_t *restrict edges, const float *restrict drive,
+                  const float *restrict left, const float *restrict up, const float *restrict down,
+                  float *restrict own) {
+  const float *right = left + 1;
+  for (int i = 0; i < count; i++) {
+    float all = (float)edges[i] + SCREENING, scale = RELAXATION / all;
+    float sum = drive[i] - all * own[i] + left[i] + right[i] + up[i] + down[i];
+    float relaxed = own[i] + scale * sum;
+    own[i] = edges[i] ? relaxed : own[i];
+  }
+}
+
+static void relax_row(void *user, int row, int thread) {
   const composition *c = user;
-  const rc_level *level = c->level;
-  int y = level->box.y0 + item, channels = c->channels;
-  size_t row = (size_t)level->box_w * (size_t)channels;
+  int parity = (row + c->colour) & 1;
+  float *all = c->correction;
   (void)thread;
-  for (int x = level->box.x0 + ((item + c->colour) & 1); x < level->box.x1; x += 2) {
-    size_t at = rc_level_at(level, x, y);
-    if (!c->edges[at]) continue;
-    float *own = c->correction + at * (size_t)channels;
-    const float *drive = c->drive + at * (size_t)channels;
-    float scale = RELAXATION / ((float)c->edges[at] + SCREENING);
-    bool left = x > level->box.x0, right = x + 1 < level->box.x1;
-    bool up = item > 0, down = item + 1 < level->box_h;
-    for (int k = 0; k < channels; k++) {
-      float sum = drive[k] - ((float)c->edges[at] + SCREENING) * own[k];
-      if (left) sum += own[k - channels];
-      if (right) sum += own[k + channels];
-      if (up) sum += *(own + k - row);
-      if (down) sum += own[(size_t)k + row];
-      own[k] += scale * sum;
-    }
+  for (int k = 0; k < c->channels; k++) {
+    size_t own = half_row(c, row, parity, k);
+    relax(c->half_w, c->edges + half_edges(c, row, parity), c->drive + own,
+          all + half_row(c, row, !parity, k) - !parity, all + half_row(c, row - 1, parity, k),
+          all + half_row(c, row + 1, parity, k), all + own);
   }
 }
 
 static recede_status solve_join(rc_context *context, composition *c) {
-  RC_TRY(rc_parallel(context, c->level->box_h, drive_row, c));
+  int rows = c->level->box_h;
+  size_t count = (size_t)(rows + 2) * 2 * (size_t)c->channels * (size_t)(c->half_w + 2);
+  RC_TRY(RC_NEW_ZERO(context, count, &c->correction));
+  RC_TRY(RC_NEW_ZERO(context, count, &c->drive));
+  RC_TRY(RC_NEW_ZERO(context, (size_t)rows * 2 * (size_t)c->half_w, &c->edges));
+  RC_TRY(rc_parallel(context, rows, drive_row, c));
   for (int sweep = 0; sweep < SWEEPS; sweep++)
     for (c->colour = 0; c->colour < 2; c->colour++)
-      RC_TRY(rc_parallel(context, c->level->box_h, relax_row, c));
+      RC_TRY(rc_parallel(context, rows, relax_row, c));
   return RECEDE_OK;
+}
+
+static void write_row(void *user, int item, int thread) {
+  const composition *c = user;
+  const rc_level *level = c->level;
+  int y = level->box.y0 + item;
+  (void)thread;
+  for (int x = level->box.x0; x < level->box.x1; x++) {
+    int parity = (x - level->box.x0) & 1, column = (x - level->box.x0) / 2;
+    const float *value = c->value + rc_level_at(level, x, y) * (size_t)c->channels;
+    if (!rc_level_is_target(level, x, y)) continue;
+    for (int k = 0; k < c->channels; k++) {
+      size_t at = half_row(c, item, parity, k) + (size_t)column;
+      rc_pixel(c->residual, x, y)[k] = value[k] + (c->correction ? c->correction[at] : 0.f);
+    }
+  }
 }
 
 recede_status rc_compose(rc_context *context, const rc_level *level, const rc_sampler *sampler,
@@ -144,22 +182,14 @@ recede_status rc_compose(rc_context *context, const rc_level *level, const rc_sa
                    .mips = mips,
                    .mip_count = mip_count,
                    .channels = residual->channels,
-                   .residual = residual};
-  size_t count = (size_t)level->box_w * (size_t)level->box_h, values = count * (size_t)c.channels;
+                   .residual = residual,
+                   .half_w = (level->box_w + 1) / 2};
+  size_t values = (size_t)level->box_w * (size_t)level->box_h * (size_t)c.channels;
   rc_block *mark = rc_mark(context);
-  RC_TRY(RC_NEW_ZERO(context, values, &c.value));
-  RC_TRY(RC_NEW_ZERO(context, values, &c.correction));
-  RC_TRY(RC_NEW_ZERO(context, values, &c.drive));
-  RC_TRY(RC_NEW(context, count, &c.edges));
+  RC_TRY(RC_NEW(context, values, &c.value));
   RC_TRY(rc_parallel(context, level->box_h, sample_row, &c));
   if (join) RC_TRY(solve_join(context, &c));
-  for (int y = level->box.y0; y < level->box.y1; y++)
-    for (int x = level->box.x0; x < level->box.x1; x++) {
-      size_t at = rc_level_at(level, x, y) * (size_t)c.channels;
-      if (!rc_level_is_target(level, x, y)) continue;
-      for (int k = 0; k < c.channels; k++)
-        rc_pixel(residual, x, y)[k] = c.value[at + (size_t)k] + c.correction[at + (size_t)k];
-    }
+  RC_TRY(rc_parallel(context, level->box_h, write_row, &c));
   rc_release(context, mark);
   return RECEDE_OK;
 }

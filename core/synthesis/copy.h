@@ -73,9 +73,23 @@ static inline void rc_copy_jacobian(const rc_chart *chart, rc_copy copy, const r
   jacobian[3] = (1.f + gy * chart->ly) * place->ratio;
 }
 
+/* rc_exp2(eighths / 8) from its own values for -4 .. 4. */
+static inline float rc_exp2_eighths(int eighths) {
+  static const float parts[9] = {0x1.6a09e6p-1f, 0x1.8ace54p-1f, 0x1.ae89fap-1f,
+                                 0x1.d5818ep-1f, 0x1p+0f,        0x1.172b84p+0f,
+                                 0x1.306fep+0f,  0x1.4bfdaep+0f, 0x1.6a09e6p+0f};
+  if (eighths < -800 || eighths > 800) return rc_exp2((float)eighths / 8.f);
+  int whole = (eighths < 0 ? eighths - 4 : eighths + 4) / 8;
+  uint32_t bits = (uint32_t)(whole + 127) << 23;
+  float power;
+  memcpy(&power, &bits, 4);
+  return parts[eighths - 8 * whole + 4] * power;
+}
+
 /* Eighth-octave steps: 4.4 % off at the most, below what the eye takes for another size. */
 static inline float rc_scale_step(float ratio) {
-  return ratio > .957f && ratio < 1.045f ? 1.f : rc_exp2(rc_round(8.f * rc_log2(ratio)) / 8.f);
+  bool same = ratio > .957f && ratio < 1.045f;
+  return same ? 1.f : rc_exp2_eighths((int)rc_round(8.f * rc_log2(ratio)));
 }
 
 /* The copy that takes target (x, y) from source (to_x, to_y), all relative to the chart's origin.
