@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/random.h"
 #include "image/distance.h"
 
@@ -20,35 +21,64 @@
 #define LEAST_REACHED 8
 #define REACH_BY 1.05f
 #define WIDEST 8.f
+/* Sources are sorted in bands of so many rows at once. */
+#define BAND_ROWS 64
 
 static uint32_t encode(float value, float gain) {
   float byte = value * gain + 128.5f;
   return byte < 0.f ? 0u : byte >= 255.f ? 255u : (uint32_t)byte;
 }
 
-static void pack(const rc_image *image, float gain, uint32_t *pixels) {
-  size_t count = (size_t)image->width * (size_t)image->height;
-  const float *v = image->data;
-  if (image->channels == 1)
-    for (size_t i = 0; i < count; i++) pixels[i] = encode(v[i], gain) * 0x010101u;
+/* What the rows of a level are made from. */
+typedef struct making {
+  const rc_image *image;
+  rc_level *level;
+  float gain;
+  uint8_t trust[256]; /* by the distance from the hole's border */
+  uint64_t (*moments)[7]; /* of each row's sources: sums, sums of squares, number */
+} making;
+
+static void pack_row(void *user, int y, int thread) {
+  const making *m = user;
+  size_t count = (size_t)m->image->width;
+  const float *v = rc_pixel(m->image, 0, y);
+  uint32_t *pixels = m->level->pixels + (size_t)y * count;
+  (void)thread;
+  if (m->image->channels == 1)
+    for (size_t i = 0; i < count; i++) pixels[i] = encode(v[i], m->gain) * 0x010101u;
   else
     for (size_t i = 0; i < count; i++)
-      pixels[i] = encode(v[3 * i], gain) | encode(v[3 * i + 1], gain) << 8 |
-                  encode(v[3 * i + 2], gain) << 16;
+      pixels[i] = encode(v[3 * i], m->gain) | encode(v[3 * i + 1], m->gain) << 8 |
+                  encode(v[3 * i + 2], m->gain) << 16;
 }
 
-static void set_weights(rc_level *level, float gamma) {
-  uint8_t table[256];
-  size_t count = (size_t)level->width * (size_t)level->height;
+static void set_trust(float gamma, uint8_t trust[256]) {
   for (int i = 0; i < 256; i++) {
     float weight = RC_WEIGHT_ONE * rc_exp2(-(float)i * rc_log2(gamma));
-    table[i] = weight < 1.f ? 1 : (uint8_t)(weight + .5f);
+    trust[i] = weight < 1.f ? 1 : (uint8_t)(weight + .5f);
   }
-  rc_distance_inside(level->flags, RC_TARGET, level->width, level->height, false, level->weight);
-  for (size_t i = 0; i < count; i++)
-    level->weight[i] = level->flags[i] & RC_TARGET  ? table[level->weight[i]]
-                       : level->flags[i] & RC_KNOWN ? RC_WEIGHT_ONE
-                                                    : 0;
+}
+
+/* The weights hold the distances before. */
+static void weigh_row(void *user, int y, int thread) {
+  const making *m = user;
+  const rc_level *level = m->level;
+  uint64_t *moments = m->moments[y];
+  (void)thread;
+  memset(moments, 0, sizeof m->moments[y]);
+  for (int x = 0; x < level->width; x++) {
+    size_t i = (size_t)y * (size_t)level->width + (size_t)x;
+    uint8_t flags = level->flags[i];
+    level->weight[i] = flags & RC_TARGET  ? m->trust[level->weight[i]]
+                       : flags & RC_KNOWN ? RC_WEIGHT_ONE
+                                          : 0;
+    if (!(flags & RC_SOURCE)) continue;
+    for (int k = 0; k < 3; k++) {
+      uint32_t v = level->pixels[i] >> 8 * k & 255;
+      moments[k] += v, moments[3 + k] += v * v;
+    }
+    moments[6]++;
+  }
 }
 
 static void find_box(rc_level *level) {
@@ -66,24 +96,27 @@ static void find_box(rc_level *level) {
   level->box_h = box.y1 - box.y0;
 }
 
-static void set_variance(rc_level *level) {
-  double sum[3] = {0}, square[3] = {0}, count = 0, total = 0;
-  for (size_t i = 0; i < (size_t)level->width * (size_t)level->height; i++) {
-    if (!(level->flags[i] & RC_SOURCE)) continue;
-    count++;
-    for (int k = 0; k < 3; k++) {
-      double v = level->pixels[i] >> 8 * k & 255;
-      sum[k] += v, square[k] += v * v;
-    }
-  }
-  for (int k = 0; k < 3 && count > 0; k++)
-    total += square[k] / count - sum[k] / count * (sum[k] / count);
+static void set_variance(const making *m) {
+  rc_level *level = m->level;
+  double sum[7] = {0}, total = 0;
+  for (int y = 0; y < level->height; y++)
+    for (int k = 0; k < 7; k++) sum[k] += (double)m->moments[y][k];
+  for (int k = 0; k < 3 && sum[6] > 0; k++)
+    total += sum[3 + k] / sum[6] - sum[k] / sum[6] * (sum[k] / sum[6]);
   level->variance = fmaxf((float)(total / 3), 1.f);
 }
 
-static recede_status for_each_source(rc_context *context, rc_level *level, int32_t *fill) {
-  for (int y = 0; y < level->height; y++) {
-    RC_TRY(rc_poll(context));
+/* A counting sort of the sources by log2 w, bands of rows at a time. */
+typedef struct sorting {
+  rc_level *level;
+  int32_t (*next)[RC_MAX_BINS]; /* of each band: sources in a bin, then where the next goes */
+} sorting;
+
+static void for_each_source(const sorting *s, int band, bool place) {
+  const rc_level *level = s->level;
+  int32_t *next = s->next[band];
+  int end = (band + 1) * BAND_ROWS < level->height ? (band + 1) * BAND_ROWS : level->height;
+  for (int y = band * BAND_ROWS; y < end; y++)
     for (int x = 0; x < level->width; x++) {
       size_t i = (size_t)y * (size_t)level->width + (size_t)x;
       if (level->room[i] <= RC_PATCH_RADIUS + 1) continue;
@@ -91,18 +124,21 @@ static recede_status for_each_source(rc_context *context, rc_level *level, int32
       if (!(w > 0.f)) continue;
       int bin = (int)((rc_log2(w) - level->bin_log2_w0) * RC_BINS_PER_OCTAVE);
       bin = bin < 0 ? 0 : bin >= level->bins ? level->bins - 1 : bin;
-      if (level->order)
-        level->order[fill[bin]++] = (int32_t)i;
-      else
-        fill[bin]++;
+      if (place) level->order[next[bin]] = (int32_t)i;
+      next[bin]++;
     }
-  }
-  return RECEDE_OK;
 }
 
-/* A counting sort of the sources by log2 w. */
-static recede_status sort_sources(rc_context *context, rc_level *level) {
-  int32_t count[RC_MAX_BINS] = {0};
+static void count_band(void *user, int band, int thread) {
+  (void)thread;
+  for_each_source(user, band, false);
+}
+static void place_band(void *user, int band, int thread) {
+  (void)thread;
+  for_each_source(user, band, true);
+}
+
+static void set_bins(rc_level *level) {
   float least = 1e9f, most = 1e-9f;
   for (int c = 0; c < 4; c++) {
     float w = rc_level_w(level, rc_level_x(level, c & 1 ? level->width - 1 : 0),
@@ -114,15 +150,28 @@ static recede_status sort_sources(rc_context *context, rc_level *level) {
   level->bin_log2_w0 = rc_log2(least);
   level->bins = (int)(rc_log2(most / least) * RC_BINS_PER_OCTAVE) + 1;
   if (level->bins > RC_MAX_BINS) level->bins = RC_MAX_BINS;
-  level->order = NULL;
-  RC_TRY(for_each_source(context, level, count));
+}
+
+static recede_status sort_sources(rc_context *context, rc_level *level) {
+  sorting s = {level, NULL};
+  int bands = (level->height + BAND_ROWS - 1) / BAND_ROWS;
+  set_bins(level);
+  RC_TRY(RC_NEW_ZERO(context, bands, &s.next));
+  RC_TRY(rc_parallel(context, bands, count_band, &s));
   level->first[0] = 0;
   for (int b = 0; b < level->bins; b++) {
-    level->first[b + 1] = level->first[b] + count[b];
-    count[b] = level->first[b];
+    int32_t at = level->first[b];
+    for (int band = 0; band < bands; band++) {
+      int32_t count = s.next[band][b];
+      s.next[band][b] = at;
+      at += count;
+    }
+    level->first[b + 1] = at;
   }
   RC_TRY(RC_NEW(context, level->first[level->bins] + 1, &level->order));
-  return for_each_source(context, level, count);
+  RC_TRY(rc_parallel(context, bands, place_band, &s));
+  RC_FREE(context, &s.next);
+  return RECEDE_OK;
 }
 
 /* Sources with w in low..high: a run of level->order. */
@@ -232,20 +281,23 @@ recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_
   level->height = image->height;
   level->flags = flags->data;
   level->chart = *chart;
+  making m = {.image = image, .level = level, .gain = gain};
   RC_TRY(RC_NEW(context, count, &level->pixels));
   RC_TRY(RC_NEW(context, count, &level->weight));
   RC_TRY(RC_NEW(context, count, &level->room));
-  /* Each takes a tenth of a second or two in a large picture. */
-  pack(image, gain, level->pixels);
-  RC_TRY(rc_poll(context));
+  RC_TRY(RC_NEW(context, level->height, &m.moments));
+  RC_TRY(rc_parallel(context, level->height, pack_row, &m));
   rc_distance_inside(level->flags, RC_SOURCE, level->width, level->height, true, level->room);
   RC_TRY(rc_poll(context));
-  set_weights(level, gamma);
+  rc_distance_inside(level->flags, RC_TARGET, level->width, level->height, false, level->weight);
   RC_TRY(rc_poll(context));
+  set_trust(gamma, m.trust);
+  RC_TRY(rc_parallel(context, level->height, weigh_row, &m));
+  set_variance(&m);
+  RC_FREE(context, &m.moments);
   find_box(level);
   for (int i = 0; i < RC_PATCH_LANES; i++)
     level->lane_offset[i] = rc_lane_y[i] * level->width + rc_lane_x[i];
-  set_variance(level);
   RC_TRY(rc_poll(context));
   size_t box = (size_t)level->box_w * (size_t)level->box_h;
   RC_TRY(RC_NEW(context, box, &level->field));

@@ -1,6 +1,9 @@
 #include "synthesis/usage.h"
 
+#include <string.h>
+
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "synthesis/evaluate.h"
 
 /* Uses are counted per pixel and averaged over a square of 5 px. */
@@ -26,31 +29,54 @@ static void count_uses(const rc_level *level, float *uses) {
     }
 }
 
-/* The mean over 2 AROUND + 1 pixels of a line; beyond its ends nothing is used. */
-static void average_line(const float *from, float *to, int count, size_t step) {
-  for (int i = 0; i < count; i++) {
+typedef struct averaging {
+  const rc_level *level;
+  float *price, *across;
+} averaging;
+
+/* The means over 2 AROUND + 1 pixels; beyond the picture's borders nothing is used. */
+static void average_across(void *user, int y, int thread) {
+  const averaging *a = user;
+  int width = a->level->width;
+  const float *from = a->price + (size_t)y * (size_t)width;
+  float *to = a->across + (size_t)y * (size_t)width;
+  (void)thread;
+  for (int x = 0; x < width; x++) {
     float sum = 0.f;
-    int first = i > AROUND ? i - AROUND : 0, last = i + AROUND < count ? i + AROUND : count - 1;
-    for (int k = first; k <= last; k++) sum += from[(size_t)k * step];
-    to[(size_t)i * step] = sum / (2 * AROUND + 1);
+    int first = x > AROUND ? x - AROUND : 0, last = x + AROUND < width ? x + AROUND : width - 1;
+    for (int k = first; k <= last; k++) sum += from[k];
+    to[x] = sum / (2 * AROUND + 1);
+  }
+}
+
+static void average_along(void *user, int y, int thread) {
+  const averaging *a = user;
+  size_t width = (size_t)a->level->width;
+  int height = a->level->height;
+  int first = y > AROUND ? y - AROUND : 0, last = y + AROUND < height ? y + AROUND : height - 1;
+  float *to = a->price + (size_t)y * width, unit = PRICE_OF_USE * a->level->variance;
+  (void)thread;
+  for (size_t x = 0; x < width; x++) to[x] = 0.f;
+  for (int k = first; k <= last; k++) {
+    const float *from = a->across + (size_t)k * width;
+    for (size_t x = 0; x < width; x++) to[x] += from[x];
+  }
+  for (size_t x = 0; x < width; x++) {
+    float uses = to[x] / (2 * AROUND + 1) - FREE_USES;
+    uses = uses < 0.f ? 0.f : uses;
+    to[x] = unit * (uses > MOST_USES ? MOST_USES : uses);
   }
 }
 
 recede_status rc_usage_prices(rc_context *context, const rc_level *level, float *price) {
-  size_t width = (size_t)level->width, count = width * (size_t)level->height;
-  float *rows;
+  size_t count = (size_t)level->width * (size_t)level->height;
+  averaging a = {level, price, NULL};
   rc_block *mark = rc_mark(context);
-  RC_TRY(RC_NEW(context, count, &rows));
-  for (size_t i = 0; i < count; i++) price[i] = 0.f;
+  RC_TRY(RC_NEW(context, count, &a.across));
+  memset(price, 0, count * sizeof *price);
   count_uses(level, price);
-  for (int y = 0; y < level->height; y++)
-    average_line(price + (size_t)y * width, rows + (size_t)y * width, level->width, 1);
-  for (int x = 0; x < level->width; x++) average_line(rows + x, price + x, level->height, width);
-  for (size_t i = 0; i < count; i++) {
-    float uses = price[i] - FREE_USES;
-    uses = uses < 0.f ? 0.f : uses > MOST_USES ? MOST_USES : uses;
-    price[i] = PRICE_OF_USE * level->variance * uses;
-  }
+  RC_TRY(rc_parallel(context, level->height, average_across, &a));
+  RC_TRY(rc_parallel(context, level->height, average_along, &a));
   rc_release(context, mark);
   return RECEDE_OK;
 }
