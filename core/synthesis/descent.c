@@ -168,7 +168,10 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
         rc_stage(context, coarsest ? "start" : "search", coarsest ? .1 : from, exponent ? to : .8));
     RC_TRY(rc_level_new(context, &e->images[exponent], &e->flags[exponent], &chart, gamma, e->gain,
                         coarsest ? NULL : &coarser.ranges, &level));
-    if (!coarsest) rc_field_from_coarser(&level, &coarser);
+    if (!coarsest) {
+      rc_field_from_coarser(&level, &coarser);
+      rc_level_free_pixels(context, &coarser);
+    }
     RC_TRY(run_level(context, e, exponent, &level));
     coarser = level;
   }

@@ -16,40 +16,64 @@
 #define SURROUNDINGS_PX 160
 
 typedef struct bands {
-  const rc_image *residual;
   rc_box box;
   int width, height, channels;
-  const float *in;
+  const float *in; /* rows of in_row floats */
+  size_t in_row;
   float *out;
   int spacing;
-  bool vertical;
 } bands;
 
-static void smooth_row(void *user, int y, int thread) {
-  static const float tap[5] = {.0625f, .25f, .375f, .25f, .0625f};
+static const float tap[5] = {.0625f, .25f, .375f, .25f, .0625f};
+
+static int within(int v, int count) { return v < 0 ? 0 : v >= count ? count - 1 : v; }
+
+static void smooth_along(void *user, int y, int thread) {
   const bands *b = user;
+  size_t row = (size_t)b->width * (size_t)b->channels;
+  float *restrict to = b->out + (size_t)y * row;
+  const float *from[5];
   (void)thread;
-  for (int x = 0; x < b->width; x++) {
-    float sum[3] = {0, 0, 0};
-    for (int i = -2; i <= 2; i++) {
-      int sx = b->vertical ? x : x + i * b->spacing, sy = b->vertical ? y + i * b->spacing : y;
-      sx = sx < 0 ? 0 : sx >= b->width ? b->width - 1 : sx;
-      sy = sy < 0 ? 0 : sy >= b->height ? b->height - 1 : sy;
-      const float *pixel =
-          b->in + ((size_t)sy * (size_t)b->width + (size_t)sx) * (size_t)b->channels;
-      for (int k = 0; k < b->channels; k++) sum[k] += tap[i + 2] * pixel[k];
-    }
-    memcpy(b->out + ((size_t)y * (size_t)b->width + (size_t)x) * (size_t)b->channels, sum,
-           (size_t)b->channels * sizeof *sum);
+  for (int i = 0; i < 5; i++)
+    from[i] = b->in + (size_t)within(y + (i - 2) * b->spacing, b->height) * b->in_row;
+  for (size_t x = 0; x < row; x++) {
+    float sum = 0.f;
+    for (int i = 0; i < 5; i++) sum += tap[i] * from[i][x];
+    to[x] = sum;
   }
 }
 
-static recede_status smooth(rc_context *context, bands *b, const float *in, float *scratch,
-                            float *out) {
-  b->in = in, b->out = scratch, b->vertical = false;
-  RC_TRY(rc_parallel(context, b->height, smooth_row, b));
-  b->in = scratch, b->out = out, b->vertical = true;
-  return rc_parallel(context, b->height, smooth_row, b);
+static void smooth_across(void *user, int y, int thread) {
+  const bands *b = user;
+  int channels = b->channels, reach = 2 * b->spacing;
+  const float *from = b->in + (size_t)y * b->in_row;
+  float *restrict to = b->out + (size_t)y * (size_t)b->width * (size_t)channels;
+  (void)thread;
+  for (int x = 0; x < b->width; x++) {
+    if (x == reach && b->width > 2 * reach) { /* the inner ones, without looking for the borders */
+      for (int at = reach * channels; at < (b->width - reach) * channels; at++) {
+        float sum = 0.f;
+        for (int i = 0; i < 5; i++) sum += tap[i] * from[at + (i - 2) * b->spacing * channels];
+        to[at] = sum;
+      }
+      x = b->width - reach;
+    }
+    for (int k = 0; k < channels; k++) {
+      float sum = 0.f;
+      for (int i = 0; i < 5; i++)
+        sum += tap[i] * from[within(x + (i - 2) * b->spacing, b->width) * channels + k];
+      to[x * channels + k] = sum;
+    }
+  }
+}
+
+static recede_status smooth(rc_context *context, bands *b, const float *in, size_t in_row,
+                            float *scratch, float *out) {
+  size_t row = (size_t)b->width * (size_t)b->channels;
+  b->in = in, b->in_row = in_row, b->out = scratch;
+  RC_TRY(rc_parallel(context, b->height, smooth_across, b));
+  b->in = scratch, b->in_row = row, b->out = out;
+  return rc_parallel(context, b->height, smooth_along, b);
 }
 
 /* Mean square of a band by class of w, in the hole and in known pixels. */
@@ -68,33 +92,66 @@ static int class_at(const rc_level *level, int x, int y, float *position) {
   return c < 0 ? 0 : c >= level->ranges.count ? level->ranges.count - 1 : c;
 }
 
-static double band_square(const bands *b, const float *fine, const float *coarse, size_t i) {
-  double sum = 0;
-  for (int k = 0; k < b->channels; k++) {
-    double d = (double)fine[i * (size_t)b->channels + (size_t)k] -
-               (double)coarse[i * (size_t)b->channels + (size_t)k];
-    sum += d * d;
-  }
-  return sum;
+/* Squares are taken in strips of so many rows at once and then added pixel by pixel: sums in another
+ * order would have other last bits. */
+#define STRIP_ROWS 64
+#define HOLE 128 /* a class of pixels in the hole */
+#define NONE 255
+
+typedef struct strip {
+  const bands *bands;
+  const rc_level *level;
+  const float *fine, *coarse;
+  size_t fine_row; /* floats */
+  int first;
+  double *square; /* of each pixel of the strip */
+  uint8_t *group; /* its class, + HOLE in the hole; or NONE */
+} strip;
+
+static uint8_t group_at(const rc_level *level, int x, int y) {
+  float position;
+  size_t at = (size_t)y * (size_t)level->width + (size_t)x;
+  bool hole = (level->flags[at] & RC_TARGET) != 0;
+  if (!hole && level->room[at] <= 2 * RAMP_PX) return NONE;
+  int c = class_at(level, x, y, &position);
+  return c < 0 ? NONE : (uint8_t)(hole ? HOLE + c : c);
 }
 
-static void measure(const bands *b, const rc_level *level, const uint8_t *clear, const float *fine,
-                    const float *coarse, energies *e) {
-  memset(e, 0, sizeof *e);
-  for (int y = 0; y < b->height; y++)
-    for (int x = 0; x < b->width; x++) {
-      float position;
-      size_t i = (size_t)y * (size_t)b->width + (size_t)x;
-      int px = b->box.x0 + x, py = b->box.y0 + y, c = class_at(level, px, py, &position);
-      if (c < 0) continue;
-      if (rc_level_is_target(level, px, py)) {
-        e->hole[c] += band_square(b, fine, coarse, i);
-        e->hole_count[c]++;
-      } else if (clear[(size_t)py * (size_t)level->width + (size_t)px] > 2 * RAMP_PX) {
-        e->known[c] += band_square(b, fine, coarse, i);
-        e->known_count[c]++;
-      }
+static void measure_row(void *user, int item, int thread) {
+  const strip *s = user;
+  const bands *b = s->bands;
+  int y = s->first + item;
+  const float *fine = s->fine + (size_t)y * s->fine_row;
+  const float *coarse = s->coarse + (size_t)y * (size_t)b->width * (size_t)b->channels;
+  (void)thread;
+  for (int x = 0; x < b->width; x++) {
+    size_t at = (size_t)item * (size_t)b->width + (size_t)x;
+    double sum = 0;
+    for (int k = 0; k < b->channels; k++) {
+      double d = (double)*fine++ - (double)*coarse++;
+      sum += d * d;
     }
+    s->square[at] = sum;
+    s->group[at] = group_at(s->level, b->box.x0 + x, b->box.y0 + y);
+  }
+}
+
+static recede_status measure(rc_context *context, strip *s, energies *e) {
+  const bands *b = s->bands;
+  memset(e, 0, sizeof *e);
+  for (s->first = 0; s->first < b->height; s->first += STRIP_ROWS) {
+    int rows = b->height - s->first < STRIP_ROWS ? b->height - s->first : STRIP_ROWS;
+    RC_TRY(rc_parallel(context, rows, measure_row, s));
+    for (size_t i = 0; i < (size_t)rows * (size_t)b->width; i++) {
+      int c = s->group[i] & (HOLE - 1);
+      if (s->group[i] == NONE) continue;
+      if (s->group[i] & HOLE)
+        e->hole[c] += s->square[i], e->hole_count[c]++;
+      else
+        e->known[c] += s->square[i], e->known_count[c]++;
+    }
+  }
+  return RECEDE_OK;
 }
 
 static void gains_of(const energies *e, int classes, float gains[RC_MAX_CLASSES]) {
@@ -116,24 +173,36 @@ static float gain_at(const float *gains, int classes, float position) {
   return gains[c] * (1.f - t) + gains[c + 1] * t;
 }
 
-static void apply(const bands *b, const rc_level *level, const uint8_t *depth,
-                  float gains[BANDS][RC_MAX_CLASSES], float *const layers[BANDS + 1],
-                  rc_image *residual) {
-  for (int y = 0; y < b->height; y++)
-    for (int x = 0; x < b->width; x++) {
-      float position;
-      int px = b->box.x0 + x, py = b->box.y0 + y;
-      size_t i = ((size_t)y * (size_t)b->width + (size_t)x) * (size_t)b->channels;
-      if (!rc_level_is_target(level, px, py) || class_at(level, px, py, &position) < 0) continue;
-      float ramp = fminf(
-          (float)depth[(size_t)py * (size_t)level->width + (size_t)px] / (RAMP_PX + 1.f), 1.f);
-      float *pixel = rc_pixel(residual, px, py);
-      for (int n = 0; n < BANDS; n++) {
-        float more = ramp * (gain_at(gains[n], level->ranges.count, position) - 1.f);
-        for (int k = 0; k < b->channels; k++)
-          pixel[k] += more * (layers[n][i + (size_t)k] - layers[n + 1][i + (size_t)k]);
-      }
+typedef struct application {
+  const bands *bands;
+  const rc_level *level;
+  const uint8_t *depth;
+  float gains[BANDS][RC_MAX_CLASSES];
+  float *layers[BANDS]; /* smoothed once, twice */
+  rc_image *residual;
+} application;
+
+static void apply_row(void *user, int y, int thread) {
+  const application *a = user;
+  const bands *b = a->bands;
+  const rc_level *level = a->level;
+  (void)thread;
+  for (int x = 0; x < b->width; x++) {
+    float position;
+    int px = b->box.x0 + x, py = b->box.y0 + y;
+    size_t i = ((size_t)y * (size_t)b->width + (size_t)x) * (size_t)b->channels;
+    if (!rc_level_is_target(level, px, py) || class_at(level, px, py, &position) < 0) continue;
+    float depth = (float)a->depth[(size_t)py * (size_t)level->width + (size_t)px];
+    float ramp = fminf(depth / (RAMP_PX + 1.f), 1.f), more[BANDS];
+    float *pixel = rc_pixel(a->residual, px, py);
+    for (int n = 0; n < BANDS; n++)
+      more[n] = ramp * (gain_at(a->gains[n], level->ranges.count, position) - 1.f);
+    for (int k = 0; k < b->channels; k++, i++) {
+      float finer = pixel[k];
+      for (int n = 0; n < BANDS; finer = a->layers[n++][i])
+        pixel[k] += more[n] * (finer - a->layers[n][i]);
     }
+  }
 }
 
 static rc_box grown(const rc_level *level) {
@@ -146,30 +215,33 @@ static rc_box grown(const rc_level *level) {
 }
 
 recede_status rc_match_detail(rc_context *context, const rc_level *level, rc_image *residual) {
-  bands b = {.residual = residual, .box = grown(level), .channels = residual->channels};
-  float *layers[BANDS + 1], *scratch, gains[BANDS][RC_MAX_CLASSES];
+  bands b = {.box = grown(level), .channels = residual->channels};
+  application a = {.bands = &b, .level = level, .residual = residual};
+  strip s = {.bands = &b, .level = level};
+  float *scratch;
   uint8_t *depth;
   energies e;
   rc_block *mark = rc_mark(context);
   b.width = b.box.x1 - b.box.x0, b.height = b.box.y1 - b.box.y0;
-  size_t values = (size_t)b.width * (size_t)b.height * (size_t)b.channels;
+  size_t row = (size_t)b.width * (size_t)b.channels, values = row * (size_t)b.height;
   RC_TRY(RC_NEW(context, (size_t)level->width * (size_t)level->height, &depth));
   RC_TRY(RC_NEW(context, values, &scratch));
-  for (int n = 0; n <= BANDS; n++) RC_TRY(RC_NEW(context, values, &layers[n]));
-  for (int y = 0; y < b.height; y++)
-    memcpy(layers[0] + (size_t)y * (size_t)b.width * (size_t)b.channels,
-           rc_pixel(residual, b.box.x0, b.box.y0 + y),
-           (size_t)b.width * (size_t)b.channels * sizeof(float));
+  RC_TRY(RC_NEW(context, STRIP_ROWS * b.width, &s.square));
+  RC_TRY(RC_NEW(context, STRIP_ROWS * b.width, &s.group));
+  s.fine = rc_pixel(residual, b.box.x0, b.box.y0);
+  s.fine_row = (size_t)residual->width * (size_t)b.channels;
   for (int n = 0; n < BANDS; n++) {
+    RC_TRY(RC_NEW(context, values, &a.layers[n]));
     b.spacing = 1 << n;
-    RC_TRY(smooth(context, &b, layers[n], scratch, layers[n + 1]));
-    measure(&b, level, level->room, layers[n], layers[n + 1], &e);
-    gains_of(&e, level->ranges.count, gains[n]);
-    RC_TRY(rc_poll(context));
+    RC_TRY(smooth(context, &b, s.fine, s.fine_row, scratch, a.layers[n]));
+    s.coarse = a.layers[n];
+    RC_TRY(measure(context, &s, &e));
+    gains_of(&e, level->ranges.count, a.gains[n]);
+    s.fine = a.layers[n], s.fine_row = row;
   }
   rc_distance_inside(level->flags, RC_TARGET, level->width, level->height, false, depth);
-  RC_TRY(rc_poll(context));
-  apply(&b, level, depth, gains, layers, residual);
+  a.depth = depth;
+  RC_TRY(rc_parallel(context, b.height, apply_row, &a));
   rc_release(context, mark);
   return RECEDE_OK;
 }

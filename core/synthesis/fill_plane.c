@@ -180,13 +180,15 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
 }
 
 uint64_t rc_plane_bytes(uint64_t pixels, uint64_t box, int channels, const recede_params *params) {
-  uint64_t c = (uint64_t)channels, thirds = 4; /* a pyramid is 4/3 of its finest level */
+  uint64_t c = (uint64_t)channels;
   uint64_t grown = 4 * box + (256 << 10);      /* the box that detail is measured in */
   uint64_t pyramid = pixels * (4 * c + 1) / 3;
-  uint64_t levels = (pixels * (4 + 1 + 1 + 4) + box * (12 + 4 + 1)) * thirds / 3;
-  uint64_t search = box * (12 + 4 + 4) * 2 + pixels * 2, composition = box * (12 * c + 1);
-  uint64_t detail = (grown < pixels ? grown : pixels) * 16 * c + pixels;
+  /* Of the coarser levels, 1/3 of the finest, only the fields stay; the coarsest alone has sources
+   * in order, but it may be the only one. */
+  uint64_t levels = pixels * (4 + 1 + 1 + 4) + box * (12 + 4 + 1) * 4 / 3;
+  uint64_t search = box * (12 + 4 + 4) * 2 + pixels * 4, composition = box * (12 * c + 1);
+  uint64_t detail = (grown < pixels ? grown : pixels) * 12 * c + pixels;
   uint64_t last = search > composition ? search : composition;
   (void)params;
-  return pyramid + levels + (last > detail ? last : detail) + ((uint64_t)2 << 20);
+  return pyramid + levels + (last > detail ? last : detail) + ((uint64_t)4 << 20);
 }

@@ -271,6 +271,13 @@ void rc_level_random_source(const rc_level *level, rc_sources sources, uint64_t 
   *y = i / level->width;
 }
 
+void rc_level_free_pixels(rc_context *context, rc_level *level) {
+  RC_FREE(context, &level->pixels);
+  RC_FREE(context, &level->weight);
+  RC_FREE(context, &level->room);
+  RC_FREE(context, &level->order);
+}
+
 recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_mask *flags,
                            const rc_chart *chart, float gamma, float gain, const rc_ranges *ranges,
                            rc_level *level) {
@@ -303,7 +310,7 @@ recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_
   RC_TRY(RC_NEW(context, box, &level->field));
   RC_TRY(RC_NEW(context, box, &level->cost));
   RC_TRY(RC_NEW_ZERO(context, box, &level->classes));
-  RC_TRY(sort_sources(context, level));
+  if (!ranges) RC_TRY(sort_sources(context, level));
   make_classes(level);
   if (ranges) level->ranges = *ranges;
   classify(level, extents);
