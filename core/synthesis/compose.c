@@ -11,6 +11,9 @@
  * leave .82^40 = .0004 of the error. */
 #define RELAXATION 1.82f
 #define SWEEPS 40
+/* Half sweeps, red or black, that are done at once, and the rows of a band: a few hundred KB. */
+#define AT_ONCE 16
+#define BAND_ROWS 64
 /* Sources finer than this many px per px, the mean of both directions, are sampled one level
  * coarser. */
 #define MIP_AT 1.6f
@@ -28,7 +31,6 @@ typedef struct composition {
   float *correction; /* what the join adds; NULL: there is none */
   float *drive;      /* right-hand side of the join */
   uint8_t *edges;    /* how many neighbours a pixel has */
-  int colour;        /* of the red-black sweep */
 } composition;
 
 static const int step_x[4] = {-1, 1, 0, 0}, step_y[4] = {0, 0, -1, 1};
@@ -133,17 +135,36 @@ static void relax(int count, const uint8_t *restrict edges, const float *restric
   }
 }
 
-static void relax_row(void *user, int row, int thread) {
-  const composition *c = user;
-  int parity = (row + c->colour) & 1;
+static void relax_row(const composition *c, int row, int half_sweep) {
+  int parity = (row + half_sweep) & 1;
   float *all = c->correction;
-  (void)thread;
   for (int k = 0; k < c->channels; k++) {
     size_t own = half_row(c, row, parity, k);
     relax(c->half_w, c->edges + half_edges(c, row, parity), c->drive + own,
           all + half_row(c, row, !parity, k) - !parity, all + half_row(c, row - 1, parity, k),
           all + half_row(c, row + 1, parity, k), all + own);
   }
+}
+
+/* A half sweep needs its neighbours' rows after the one before. So a band loses a row at each end
+ * with every half sweep ... */
+static void relax_band(void *user, int band, int thread) {
+  const composition *c = user;
+  int rows = c->level->box_h, first = band * BAND_ROWS, end = first + BAND_ROWS;
+  (void)thread;
+  for (int h = 0; h < AT_ONCE; h++) {
+    int from = first ? first + h : 0, to = end < rows ? end - h : rows;
+    for (int row = from; row < to; row++) relax_row(c, row, h);
+  }
+}
+
+/* ... and between two bands as many are left to be done, two more each time. */
+static void relax_seam(void *user, int seam, int thread) {
+  const composition *c = user;
+  int rows = c->level->box_h, middle = (seam + 1) * BAND_ROWS;
+  (void)thread;
+  for (int h = 1; h < AT_ONCE; h++)
+    for (int row = middle - h; row < middle + h && row < rows; row++) relax_row(c, row, h);
 }
 
 static recede_status solve_join(rc_context *context, composition *c) {
@@ -153,9 +174,11 @@ static recede_status solve_join(rc_context *context, composition *c) {
   RC_TRY(RC_NEW_ZERO(context, count, &c->drive));
   RC_TRY(RC_NEW_ZERO(context, (size_t)rows * 2 * (size_t)c->half_w, &c->edges));
   RC_TRY(rc_parallel(context, rows, drive_row, c));
-  for (int sweep = 0; sweep < SWEEPS; sweep++)
-    for (c->colour = 0; c->colour < 2; c->colour++)
-      RC_TRY(rc_parallel(context, rows, relax_row, c));
+  int bands = (rows + BAND_ROWS - 1) / BAND_ROWS;
+  for (int done = 0; done < 2 * SWEEPS; done += AT_ONCE) {
+    RC_TRY(rc_parallel(context, bands, relax_band, c));
+    RC_TRY(rc_parallel(context, bands - 1, relax_seam, c));
+  }
   return RECEDE_OK;
 }
 

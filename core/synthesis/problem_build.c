@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "image/view.h"
 
 /* The margin around a hole: small ones need several texels, whatever their size; large ones hold
@@ -67,24 +68,40 @@ static rc_line line_of(const recede_plane *plane, int origin_x, int origin_y, do
                    recede_plane_w(plane, origin_x, origin_y) / unit};
 }
 
-static recede_status read_pixels(rc_context *context, const rc_views *views, rc_problem *problem) {
-  int width = problem->image.width, channels = views->image->channels,
+typedef struct reading {
+  const rc_views *views;
+  rc_problem *problem;
+  float *values, *scratch; /* a row of each for every thread */
+  int *nonfinite;          /* of each row */
+} reading;
+
+static void read_row(void *user, int y, int thread) {
+  const reading *r = user;
+  rc_problem *problem = r->problem;
+  int width = problem->image.width, channels = r->views->image->channels,
       colours = channels < 3 ? 1 : 3;
-  float *values, *scratch;
+  float *values = r->values + (size_t)thread * (size_t)width * (size_t)channels;
+  float *scratch = r->scratch + (size_t)thread * (size_t)width;
+  uint8_t *flags = rc_flag(&problem->flags, 0, y);
+  rc_view_read(r->views->image, problem->origin_x, problem->origin_y + y, width, values);
+  r->nonfinite[y] = rc_classify_row(r->views, problem->origin_x, problem->origin_y + y, width,
+                                    values, scratch, flags);
+  for (int x = 0; x < width; x++)
+    if (flags[x] & RC_KNOWN)
+      memcpy(rc_pixel(&problem->image, x, y), values + (size_t)x * (size_t)channels,
+             (size_t)colours * sizeof(float));
+}
+
+static recede_status read_pixels(rc_context *context, const rc_views *views, rc_problem *problem) {
+  size_t width = (size_t)problem->image.width, threads = (size_t)context->threads;
+  reading r = {.views = views, .problem = problem};
   rc_block *mark = rc_mark(context);
-  RC_TRY(RC_NEW(context, width * channels, &values));
-  RC_TRY(RC_NEW(context, width, &scratch));
-  for (int y = 0; y < problem->image.height; y++) {
-    uint8_t *flags = rc_flag(&problem->flags, 0, y);
-    rc_view_read(views->image, problem->origin_x, problem->origin_y + y, width, values);
-    context->report.nonfinite_pixels += (uint64_t)rc_classify_row(
-        views, problem->origin_x, problem->origin_y + y, width, values, scratch, flags);
-    for (int x = 0; x < width; x++)
-      if (flags[x] & RC_KNOWN)
-        memcpy(rc_pixel(&problem->image, x, y), values + (size_t)x * (size_t)channels,
-               (size_t)colours * sizeof(float));
-    RC_TRY(rc_poll(context));
-  }
+  RC_TRY(RC_NEW(context, threads * width * (size_t)views->image->channels, &r.values));
+  RC_TRY(RC_NEW(context, threads * width, &r.scratch));
+  RC_TRY(RC_NEW(context, problem->image.height, &r.nonfinite));
+  RC_TRY(rc_parallel(context, problem->image.height, read_row, &r));
+  for (int y = 0; y < problem->image.height; y++)
+    context->report.nonfinite_pixels += (uint64_t)r.nonfinite[y];
   rc_release(context, mark);
   return RECEDE_OK;
 }
@@ -94,8 +111,9 @@ static double nearest_w(const rc_problem *problem, double *x, double *y) {
   double nearest = 0, sum_x = 0, sum_y = 0, count = 0;
   for (int py = 0; py < problem->flags.height; py++)
     for (int px = 0; px < problem->flags.width; px++) {
+      if (!(*rc_flag(&problem->flags, px, py) & RC_TARGET)) continue;
       double w = recede_plane_w(&problem->plane, problem->origin_x + px, problem->origin_y + py);
-      if (!(*rc_flag(&problem->flags, px, py) & RC_TARGET) || w <= 0) continue;
+      if (w <= 0) continue;
       nearest = fmax(nearest, w);
       sum_x += px, sum_y += py, count++;
     }
