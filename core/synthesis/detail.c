@@ -92,8 +92,8 @@ static int class_at(const rc_level *level, int x, int y, float *position) {
   return c < 0 ? 0 : c >= level->ranges.count ? level->ranges.count - 1 : c;
 }
 
-/* Squares are taken in strips of so many rows at once and then added pixel by pixel: sums in another
- * order would have other last bits. */
+/* Squares are taken in strips of so many rows at once and then added pixel by pixel: sums in
+ * another order would have other last bits. */
 #define STRIP_ROWS 64
 #define HOLE 128 /* a class of pixels in the hole */
 #define NONE 255

@@ -28,8 +28,8 @@ typedef struct rc_query {
 /* Once per query, before the first set: the padding lanes must weigh nothing. */
 void rc_query_init(rc_query *query);
 void rc_query_set(const rc_level *level, int x, int y, rc_query *query);
-/* Cost of the copy, whose place it is, or any value >= limit (RC_NO_COST when it is not allowed: wrong scale, or
- * its footprint is not wholly source). */
+/* Cost of the copy, whose place it is, or any value >= limit (RC_NO_COST when it is not allowed:
+ * wrong scale, or its footprint is not wholly source). */
 float rc_query_cost(const rc_level *level, const rc_kernels *kernels, rc_query *query, rc_copy copy,
                     const rc_place *place, float limit);
 /* Where a copy takes the query's pixel from. */

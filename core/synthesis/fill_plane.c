@@ -181,7 +181,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
 
 uint64_t rc_plane_bytes(uint64_t pixels, uint64_t box, int channels, const recede_params *params) {
   uint64_t c = (uint64_t)channels;
-  uint64_t grown = 4 * box + (256 << 10);      /* the box that detail is measured in */
+  uint64_t grown = 4 * box + (256 << 10); /* the box that detail is measured in */
   uint64_t pyramid = pixels * (4 * c + 1) / 3;
   /* Of the coarser levels, 1/3 of the finest, only the fields stay; the coarsest alone has sources
    * in order, but it may be the only one. */

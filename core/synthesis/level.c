@@ -34,7 +34,7 @@ typedef struct making {
   const rc_image *image;
   rc_level *level;
   float gain;
-  uint8_t trust[256]; /* by the distance from the hole's border */
+  uint8_t trust[256];     /* by the distance from the hole's border */
   uint64_t (*moments)[7]; /* of each row's sources: sums, sums of squares, number */
 } making;
 
