@@ -158,7 +158,7 @@ static recede_status run_level(rc_context *context, rc_descent *e, int exponent,
 }
 
 recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
-  rc_level coarser, level = {0};
+  rc_level coarser = {0}, level = {0};
   float gamma = e->params->engine_confidence ? CONFIDENCE_FALLOFF : 1.f;
   for (int exponent = e->level_count - 1; exponent >= 0; exponent--) {
     bool coarsest = exponent == e->level_count - 1;

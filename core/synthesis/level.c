@@ -152,7 +152,7 @@ static void set_bins(rc_level *level) {
   if (level->bins > RC_MAX_BINS) level->bins = RC_MAX_BINS;
 }
 
-static recede_status sort_sources(rc_context *context, rc_level *level) {
+recede_status rc_level_sort_sources(rc_context *context, rc_level *level) {
   sorting s = {level, NULL};
   int bands = (level->height + BAND_ROWS - 1) / BAND_ROWS;
   set_bins(level);
@@ -310,7 +310,7 @@ recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_
   RC_TRY(RC_NEW(context, box, &level->field));
   RC_TRY(RC_NEW(context, box, &level->cost));
   RC_TRY(RC_NEW_ZERO(context, box, &level->classes));
-  if (!ranges) RC_TRY(sort_sources(context, level));
+  if (!ranges) RC_TRY(rc_level_sort_sources(context, level));
   make_classes(level);
   if (ranges) level->ranges = *ranges;
   classify(level, extents);

@@ -36,8 +36,8 @@ typedef struct rc_level {
   int32_t lane_offset[RC_PATCH_LANES]; /* of each lane of a patch, in pixels */
   rc_ranges ranges;
   float variance; /* of known pixels, byte^2, mean over channels */
-  /* Sources sorted by w: indices of pixels, bin b at order[first[b]] .. order[first[b + 1]]. At the
-   * coarsest level alone: the finer ones look nearby, and take its ranges over. */
+  /* Sources sorted by w: indices of pixels, bin b at order[first[b]] .. order[first[b + 1]]. NULL
+   * where nobody asks: the finer levels look nearby, and take the coarsest one's ranges over. */
   int32_t *order;
   int32_t first[RC_MAX_BINS + 1];
   float bin_log2_w0;
@@ -62,6 +62,7 @@ static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
 recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_mask *flags,
                            const rc_chart *chart, float gamma, float gain, const rc_ranges *ranges,
                            rc_level *level);
+recede_status rc_level_sort_sources(rc_context *context, rc_level *level);
 /* When a level is done: its field and ranges are all that the next finer one asks for. */
 void rc_level_free_pixels(rc_context *context, rc_level *level);
 /* The source pixels of the right scale for a target pixel of relative position (x, y) and class: a

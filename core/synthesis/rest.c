@@ -77,6 +77,8 @@ recede_status rc_continue_rest(rc_context *context, rc_level *level, uint64_t ke
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) *count += lacks(level, x, y);
   if (!*count) return RECEDE_OK;
+  bool sorted = level->order != NULL;
+  if (!sorted) RC_TRY(rc_level_sort_sources(context, level));
   RC_TRY(RC_NEW(context, (size_t)level->box_w * (size_t)level->box_h, &r.queue));
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++)
@@ -91,5 +93,6 @@ recede_status rc_continue_rest(rc_context *context, rc_level *level, uint64_t ke
       spread(&r);
     }
   rc_release(context, mark);
+  if (!sorted) level->order = NULL;
   return RECEDE_OK;
 }
