@@ -8,9 +8,9 @@
 
 /* Uses are counted per pixel and averaged over a square of 5 px. */
 #define AROUND 2
-/* A use in two is free: a hole's neighbourhood holds several times its pixels. Then .2 variances
- * for each more: hard cases gained 3 points by prices of .1 to .3. */
-#define FREE_USES .5f
+/* One use is free: whole copies are right, and half a use broke bricks' joints. Then .2 variances
+ * for each more, up to four: hard cases gained 3 points by prices of .1 to .3. */
+#define FREE_USES 1.f
 #define PRICE_OF_USE .2f
 #define MOST_USES 4.f
 

@@ -1,6 +1,7 @@
 #!/bin/bash
-# `./dev fuzz [SECONDS [SEED]]`: each target for so long (60); without a seed, by chance. What it has found is kept in out/fuzz and
-# used again; an input that breaks something is written there, and the target fails.
+# `./dev fuzz [SECONDS [SEED]]`: each target for so long (60); without a seed, by chance. What it has
+# found is kept in out/fuzz and used again; an input that breaks something is written there, and the
+# target fails.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -23,7 +24,8 @@ for target in "${targets[@]}"; do
   mkdir -p "$found"
   echo "== $target, $seconds s"
   if ! "build-fuzz/tests/fuzz/fuzz-$target" -max_total_time="$seconds" -seed="$seed" \
-    -max_len=6000 -timeout=60 -len_control=0 -artifact_prefix="$project/out/fuzz/$target-" "$found" \
+    -max_len=6000 -timeout=60 -len_control=0 \
+    -artifact_prefix="$project/out/fuzz/$target-" "$found" \
     >"$project/out/fuzz/$target.log" 2>&1; then
     failed=1
     grep -E 'ERROR|SUMMARY|Test unit written' "$project/out/fuzz/$target.log" || true
