@@ -1,7 +1,7 @@
 #!/bin/bash
-# `./dev fuzz [SECONDS [SEED]]`: each target for so long (60); without a seed, by chance. What it has
-# found is kept in out/fuzz and used again; an input that breaks something is written there, and the
-# target fails.
+# `./dev fuzz [SECONDS [SEED]]`: each target for so long (60); without a seed, by chance. What it
+# has found is kept in out/fuzz and used again; an input that breaks something is written there,
+# and the target fails.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
