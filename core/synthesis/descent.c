@@ -127,14 +127,15 @@ static recede_status run_coarsest(rc_context *context, rc_descent *e, rc_level *
   uint64_t key = rc_key((uint64_t)e->params->seed, 99, 0);
   double least = INFINITY;
   rc_trial best;
-  RC_TRY(rc_trial_new(context, level, &best));
+  if (trials > 1) RC_TRY(rc_trial_new(context, level, &best));
   if (e->params->engine_periods)
     RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count));
   for (int trial = 0; trial < trials; trial++) {
     RC_TRY(start_once(context, e, trial, level));
     RC_TRY(iterate(context, e, exponent, trial, trials, level, scratch));
-    double misfit = trials > 1 ? rc_misfit(level) : 0;
-    if (!(misfit < least) && trial) continue;
+    if (trials == 1) return RECEDE_OK;
+    double misfit = rc_misfit(level);
+    if (trial && misfit >= least) continue;
     least = misfit;
     rc_trial_save(level, &best);
   }

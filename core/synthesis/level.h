@@ -57,8 +57,8 @@ static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
 }
 
 /* byte = value * gain + 128. gamma: a target pixel counts gamma times less for each px it is deeper
- * in the hole; 1 = the same. ranges NULL: this is the
- * coarsest level, they are made here from what sources there are. */
+ * in the hole; 1 = the same. ranges NULL: this is the coarsest level, they are made here from what
+ * sources there are. */
 recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_mask *flags,
                            const rc_chart *chart, float gamma, float gain, const rc_ranges *ranges,
                            rc_level *level);
