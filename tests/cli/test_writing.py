@@ -177,9 +177,10 @@ def test_kill_at_any_moment(folder):
 def test_signals(folder):
     """SIGINT and SIGTERM at any moment: 128 + number, no output, nothing left."""
     image = write(folder / "in.png", texture(96, 128))
+    # Many times longer than the latest signal, however fast the machine.
     for number, stop in enumerate((signal.SIGINT, signal.SIGTERM) * 3):
         out = folder / f"{number}.png"
-        run = start("synthesize", image, "--size", "500x400", "--slant", "40", "--method", "paper",
+        run = start("synthesize", image, "--size", "3000x2000", "--slant", "40", "--method", "paper",
                     "--quality", "best", "-o", out, "-q")
         time.sleep((.3, .7, 1.2)[number // 2])
         run.send_signal(stop)

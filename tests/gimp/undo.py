@@ -88,7 +88,7 @@ def check_killed(host, tap, window, server, frame):
                "(gimp-image-scale i 960 720)" + SHOW)
     server.run("(gimp-image-select-rectangle i CHANNEL-OP-REPLACE 300 200 400 300)")
     before = server.save(f"{stem}-before.xcf")
-    for after in (.05, .5, 2):
+    for after in (.05, .4, 1):
         answers = []
         thread = threading.Thread(target=lambda: answers.append(server.run(long)))
         thread.start()

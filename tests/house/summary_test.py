@@ -40,10 +40,12 @@ CASES = [
      "1 passed, 1 failed"),
     ("nothing ran", [], "", "0 passed, 0 failed"),
 ]
-print(f"1..{len(CASES)}")
+print(f"1..{len(CASES) + 1}")
 for number, (name, tests, steps, wanted) in enumerate(CASES, 1):
     last, output, status = run(tests, steps)
     good = last == wanted and (status == 0) == (wanted.endswith(" 0 failed") and wanted[0] != "0")
     print(f"{'ok' if good else 'not ok'} {number} - {name}")
     if not good:
         print(f"# wanted {wanted!r}, got {last!r} and status {status}", file=sys.stderr)
+_, output, _ = run([tap("FAIL", "1..1", "not ok 1 - a", "# because of 7", "# and 8")], "")
+print("ok" if "because of 7\n" in output else "not ok", len(CASES) + 1, "- a failure's reason")

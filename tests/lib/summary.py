@@ -4,7 +4,8 @@
 FOLDER holds LABEL.testlog.json files as `meson test` writes them, and failed-steps, a line for each
 step before the tests that failed. A test that prints TAP counts as its cases; one that ends badly
 without a failing case (a crash, a timeout, a sanitizer's report, fewer cases than planned) counts
-as one failure more. Prints failures with their logs, skips, and the totals as the last line.
+as one failure more. Prints skips, failures with their logs and what they said, and the totals as
+the last line: of a run elsewhere this may be all that is kept.
 """
 import json
 import re
@@ -13,6 +14,7 @@ from pathlib import Path
 
 CASE = re.compile(r"^(not )?ok\b(?:\s+\d+)?\s*-?\s*(.*)")
 GOOD = {"OK", "SKIP", "EXPECTEDFAIL"}
+SAID_LINES = 8
 
 
 def cases(output):
@@ -46,6 +48,19 @@ def judge(test):
     return results
 
 
+def said(test, name):
+    """What a failing case printed after its line, or else the end of the test's errors."""
+    lines = (test.get("stdout") or "").splitlines()
+    for number, line in enumerate(lines):
+        match = CASE.match(line)
+        if match and match[1] and match[2].partition("#")[0].strip() == name:
+            rest = lines[number + 1:]
+            end = next((i for i, text in enumerate(rest) if not text.startswith("#")), len(rest))
+            if end:
+                return rest[:min(end, SAID_LINES)]
+    return (test.get("stderr") or "").splitlines()[-SAID_LINES:]
+
+
 def write_log(folder, label, test):
     name = re.sub(r"[^A-Za-z0-9_.-]+", "_", test["name"].split(" / ")[-1])
     path = folder / f"{label}-{name}.log"
@@ -59,8 +74,8 @@ def main():
     count = {"passed": 0, "failed": 0, "skipped": 0}
     steps = folder / "failed-steps"
     failures = steps.read_text().splitlines() if steps.exists() else []
-    failures = [f"FAILED {line}: {folder / line.split(':')[0]}.log" for line in failures]
     count["failed"] = len(failures)
+    failures = [f"FAILED {line}: {folder / line.split(':')[0]}.log" for line in failures]
     for log in sorted(folder.glob("*.testlog.json")):
         label = log.name.removesuffix(".testlog.json")
         for line in log.read_text().splitlines():
@@ -71,6 +86,7 @@ def main():
                 if state == "failed":
                     path = write_log(folder, label, test)
                     failures.append(f"FAILED [{label}] {test['name']} {name}: {path}")
+                    failures += ["    " + line[:300] for line in said(test, name)]
                 elif state == "skipped":
                     print(f"skipped [{label}] {test['name']} {name}".rstrip())
     print(*failures, sep="\n", end="\n" if failures else "")
