@@ -4,6 +4,8 @@
 
 #include "base/memory.h"
 #include "base/random.h"
+#include "synthesis/kept.h"
+#include "synthesis/lock.h"
 #include "synthesis/rest.h"
 #include "synthesis/search.h"
 #include "synthesis/start.h"
@@ -17,6 +19,12 @@
 #define COHERENCE_OF_COMPOSITION .06f
 #define PERIOD_TRIES 3
 #define PASSES 2
+/* Broken lines are seen first: they cost on top of a start's misfit, and starts that continue them
+ * one by one may fit worse, for finer levels break what the coarsest still has. A lattice carries
+ * its own lines: those fit 1.2 to 3 times worse with bricks and tiles. */
+#define PRICE_OF_BROKEN_LINES .3
+#define FAVOUR_OF_LINES 1.3
+#define FAVOUR_ON_LATTICE 1.1
 
 /* What the quality levels change. */
 typedef struct effort {
@@ -119,25 +127,57 @@ static recede_status start_once(rc_context *context, const rc_descent *e, int tr
   return rc_start(context, level, &search);
 }
 
-/* The coarsest level: starts it several times and keeps the best. */
+/* Starts first .. end - 1 of trials: the one that fits best, and its misfit. */
+static recede_status try_starts(rc_context *context, const rc_descent *e, int first, int end,
+                                int trials, rc_level *level, workspace *scratch, rc_trial *best,
+                                double *least) {
+  *least = INFINITY;
+  for (int trial = first; trial < end; trial++) {
+    RC_TRY(start_once(context, e, trial, level));
+    RC_TRY(iterate(context, e, e->level_count - 1, trial, trials, level, scratch));
+    double misfit = rc_misfit(level);
+    if (misfit >= *least) continue;
+    *least = misfit;
+    rc_trial_save(level, best);
+  }
+  return RECEDE_OK;
+}
+
+static double price_of_broken_lines(const rc_descent *e, rc_level *level, const rc_trial *trial) {
+  rc_trial_restore(level, trial);
+  return PRICE_OF_BROKEN_LINES *
+         (1 - rc_lines_kept(level, e->lines, e->line_count, e->level_count - 1));
+}
+
+/* The coarsest level: starts it several times and keeps the best, then half as often again with the
+ * lines continued. */
 static recede_status run_coarsest(rc_context *context, rc_descent *e, rc_level *level,
                                   workspace *scratch) {
   int exponent = e->level_count - 1, wanted = e->params->engine_starts;
-  int trials = rc_trials_worth(level, wanted ? wanted : effort_of(e)->starts);
+  int plain = rc_trials_worth(level, wanted ? wanted : effort_of(e)->starts);
+  int trials = e->line_count ? plain + (plain + 1) / 2 : plain;
   uint64_t key = rc_key((uint64_t)e->params->seed, 99, 0);
-  double least = INFINITY;
-  rc_trial best;
-  if (trials > 1) RC_TRY(rc_trial_new(context, level, &best));
+  double misfit, misfit_with_lines;
+  rc_trial best, with_lines;
   if (e->params->engine_periods)
-    RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count));
-  for (int trial = 0; trial < trials; trial++) {
-    RC_TRY(start_once(context, e, trial, level));
-    RC_TRY(iterate(context, e, exponent, trial, trials, level, scratch));
-    if (trials == 1) return RECEDE_OK;
-    double misfit = rc_misfit(level);
-    if (trial && misfit >= least) continue;
-    least = misfit;
-    rc_trial_save(level, &best);
+    RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count, &e->lattice));
+  if (trials == 1) {
+    RC_TRY(start_once(context, e, 0, level));
+    return iterate(context, e, exponent, 0, 1, level, scratch);
+  }
+  RC_TRY(rc_trial_new(context, level, &best));
+  RC_TRY(try_starts(context, e, 0, plain, trials, level, scratch, &best, &misfit));
+  if (e->line_count) {
+    misfit += price_of_broken_lines(e, level, &best);
+    RC_TRY(rc_trial_new(context, level, &with_lines));
+    RC_TRY(rc_lines_lock(context, e->lines, e->line_count, exponent, level));
+    RC_TRY(try_starts(context, e, plain, trials, trials, level, scratch, &with_lines,
+                      &misfit_with_lines));
+    misfit_with_lines += price_of_broken_lines(e, level, &with_lines);
+    e->continue_lines =
+        misfit_with_lines < (e->lattice ? FAVOUR_ON_LATTICE : FAVOUR_OF_LINES) * misfit;
+    if (e->continue_lines) return RECEDE_OK;
+    RC_FREE(context, &level->locked);
   }
   rc_trial_restore(level, &best);
   return RECEDE_OK;
@@ -147,13 +187,16 @@ static recede_status run_level(rc_context *context, rc_descent *e, int exponent,
   workspace scratch;
   rc_block *mark = rc_mark(context);
   RC_TRY(workspace_new(context, e, exponent, level, &scratch));
-  if (exponent == e->level_count - 1)
+  if (exponent == e->level_count - 1) {
     RC_TRY(run_coarsest(context, e, level, &scratch));
-  else
+  } else {
+    if (e->continue_lines) RC_TRY(rc_lines_lock(context, e->lines, e->line_count, exponent, level));
     RC_TRY(iterate(context, e, exponent, 0, 1, level, &scratch));
+  }
   bool untouched = !iterations_at(e, exponent);
   if (untouched) RC_TRY(rc_vote(context, level));
   if (exponent == 0) RC_TRY(settle(context, e, level, scratch.old, untouched));
+  level->locked = NULL;
   rc_release(context, mark);
   return RECEDE_OK;
 }
@@ -161,6 +204,9 @@ static recede_status run_level(rc_context *context, rc_descent *e, int exponent,
 recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
   rc_level coarser = {0}, level = {0};
   float gamma = e->params->engine_confidence ? CONFIDENCE_FALLOFF : 1.f;
+  if (e->params->engine_lines)
+    RC_TRY(rc_lines_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
+                         &e->line_count));
   for (int exponent = e->level_count - 1; exponent >= 0; exponent--) {
     bool coarsest = exponent == e->level_count - 1;
     rc_chart chart = rc_chart_coarser(e->chart, exponent);

@@ -3,6 +3,7 @@
 #define RECEDE_SYNTHESIS_DESCENT_H
 
 #include "synthesis/level.h"
+#include "synthesis/lines.h"
 #include "synthesis/periods.h"
 
 #define RC_MAX_LEVELS 10
@@ -17,7 +18,11 @@ typedef struct rc_descent {
   rc_mask flags[RC_MAX_LEVELS];
   rc_copy periods[RC_MOST_PERIODS]; /* px of the coarsest level */
   int period_count;
-  uint64_t rest; /* out: pixels that only continue what lies beside them */
+  bool lattice;                     /* they repeat in two directions */
+  rc_crossing lines[RC_MOST_LINES]; /* px of the finest level */
+  int line_count;
+  bool continue_lines; /* starts that did fitted better */
+  uint64_t rest;       /* out: pixels that only continue what lies beside them */
 } rc_descent;
 
 /* Makes the finest level, its field settled into whole copies. Progress .1 .. .8. */

@@ -185,7 +185,7 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t box, int channels, const reced
   uint64_t pyramid = pixels * (4 * c + 1) / 3;
   /* Of the coarser levels, 1/3 of the finest, only the fields stay; the coarsest alone has sources
    * in order, but it may be the only one. */
-  uint64_t levels = pixels * (4 + 1 + 1 + 4) + box * (12 + 4 + 1) * 4 / 3;
+  uint64_t levels = pixels * (4 + 1 + 1 + 4) + box * (12 + 4 + 1 + 1) * 4 / 3;
   uint64_t search = box * (12 + 4 + 4) * 2 + pixels * 4, composition = box * (12 * c + 1);
   uint64_t detail = (grown < pixels ? grown : pixels) * 12 * c + pixels;
   uint64_t last = search > composition ? search : composition;

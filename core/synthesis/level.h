@@ -32,6 +32,7 @@ typedef struct rc_level {
   int box_w, box_h;
   rc_copy *field;                      /* box_w * box_h, row by row; NAN a = none yet */
   float *cost;                         /* of the field's copies without the price of incoherence */
+  uint8_t *locked;                     /* box pixels whose copy stays; NULL = none */
   uint8_t *classes;                    /* class of each box pixel */
   int32_t lane_offset[RC_PATCH_LANES]; /* of each lane of a patch, in pixels */
   rc_ranges ranges;

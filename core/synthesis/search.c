@@ -157,6 +157,10 @@ static void improve_pixel(const scan *s, rc_box tile, pixel_state *state) {
     state->base = isnan(state->best.a) ? RC_NO_COST
                                        : rc_query_cost(level, s->search->kernels, &state->query,
                                                        state->best, &place, RC_NO_COST);
+  if (level->locked && level->locked[at]) {
+    level->cost[at] = state->base < RC_NO_COST ? state->base : 0.f; /* part of it is no source */
+    return;
+  }
   state->total = state->base + price_of(s, state, state->best, &place);
   try_neighbours(s, state);
   try_anywhere(s, state);

@@ -82,6 +82,7 @@ static void consider_periods(const ring *r, choice *c) {
 static void choose(const ring *r, int32_t pixel) {
   rc_level *level = r->level;
   int x = pixel % level->width, y = pixel / level->width;
+  if (level->locked && level->locked[rc_level_at(level, x, y)]) return;
   choice c = {.best = {NAN, NAN, NAN}, .cost = RC_NO_COST};
   rc_query_init(&c.query);
   rc_query_set(level, x, y, &c.query);
@@ -144,7 +145,8 @@ recede_status rc_start(rc_context *context, rc_level *level, const rc_search *se
   sort_rings(level, depth, pixels, first);
   for (size_t i = 0; i < count; i++)
     if (depth[i]) level->weight[i] = 0;
-  for (size_t i = 0; i < box; i++) level->field[i] = (rc_copy){NAN, NAN, NAN};
+  for (size_t i = 0; i < box; i++)
+    if (!level->locked || !level->locked[i]) level->field[i] = (rc_copy){NAN, NAN, NAN};
   for (int n = 1; n < 256; n++) {
     ring r = {level, search, pixels + first[n], first[n + 1] - first[n], depth, n};
     if (!r.count) continue;

@@ -1,0 +1,127 @@
+#include "synthesis/follow.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A line's own profile is found within so many px of where a straight fit over a longer run puts
+ * it: lines are a little bent, and so are lenses. */
+#define FAR_PX 32
+#define PINNED_WITHIN_PX 2.f
+#define PINNED_STEP_PX .25f
+/* From piece to piece it may bend by so much. */
+#define MOST_BEND_PX 1.f
+/* The part of its contrast that must be left, in the mean over the pieces. Dotted cracks keep .8,
+ * what has faded or was followed astray .1 to .4. */
+#define LEAST_KEPT .6f
+/* Sources may be this much larger or smaller than what they fill. */
+#define WIDEST_RATIO 1.7f
+
+/* Profiles are read across the line's direction from a to b, in the same sense on both sides. */
+typedef struct frame {
+  rc_ruler ruler;
+  const rc_chart *chart;
+  rc_crossing *line;
+  float length;
+} frame;
+
+static void set_frame(frame *f) {
+  float dx = f->line->bx - f->line->ax, dy = f->line->by - f->line->ay;
+  f->length = sqrtf(dx * dx + dy * dy);
+  f->ruler.ux = dx / f->length, f->ruler.uy = dy / f->length;
+}
+
+static bool source_at(const void *user, int x, int y, float *value) {
+  const rc_brightness *picture = user;
+  if (!rc_inside(picture->flags->width, picture->flags->height, x, y)) return false;
+  size_t at = (size_t)y * (size_t)picture->flags->width + (size_t)x;
+  *value = picture->value[at];
+  return (picture->flags->data[at] & RC_SOURCE) != 0;
+}
+
+/* Moves an end across the line until its nearest px look like its run does in the mean; outwards is
+ * -1 at a and 1 at b. own: the profile there. */
+static bool pin(const frame *f, float outwards, float *x, float *y, float own[RC_PROFILE]) {
+  float far[RC_PROFILE], near[RC_PROFILE], most = -1e30f, moved = 0;
+  float from = outwards * RC_PROFILE_FROM_PX;
+  if (!rc_profile_mean(&f->ruler, *x, *y, from, outwards, FAR_PX, far)) return false;
+  for (float across = -PINNED_WITHIN_PX; across <= PINNED_WITHIN_PX; across += PINNED_STEP_PX) {
+    if (!rc_profile_mean(&f->ruler, *x - f->ruler.uy * across, *y + f->ruler.ux * across, from, outwards, RC_PROFILE_NEAR_PX, near))
+      continue;
+    float likeness = 2 * rc_profile_dot(near, far) - rc_profile_dot(near, near);
+    if (likeness > most) most = likeness, moved = across;
+  }
+  *x -= f->ruler.uy * moved, *y += f->ruler.ux * moved;
+  return rc_profile_mean(&f->ruler, *x, *y, from, outwards, RC_PROFILE_NEAR_PX, own);
+}
+
+/* Where the straight line's point t (0 = a, 1 = b) comes from when the line is moved along itself
+ * until its point split lies just outside the hole, beyond a for what lies before it. */
+static bool straight_source(const frame *f, float split, float t, float *x, float *y) {
+  const rc_crossing *c = f->line;
+  rc_chart flat = *f->chart;
+  flat.raised = false;
+  float margin = (RC_PROFILE_FROM_PX + RC_PATCH_RADIUS) / f->length;
+  float to = t < split ? -margin : 1 + margin, dx = c->bx - c->ax, dy = c->by - c->ay;
+  float ax = c->ax - flat.x0, ay = c->ay - flat.y0;
+  rc_copy copy =
+      rc_copy_between(&flat, ax + split * dx, ay + split * dy, ax + to * dx, ay + to * dy);
+  rc_place place = rc_copy_place(&flat, copy, ax + t * dx, ay + t * dy);
+  *x = place.x + flat.x0, *y = place.y + flat.y0;
+  return !place.beyond && place.ratio < WIDEST_RATIO && place.ratio > 1 / WIDEST_RATIO;
+}
+
+/* Finds one piece's source near the straight one, the bend of the piece before taken over. kept:
+ * the part of own's contrast that it has. */
+static bool follow_piece(const frame *f, float split, int piece, const float own[RC_PROFILE],
+                         float *bend, float *kept) {
+  float x, y, mean[RC_PROFILE], before = *bend, half = f->length / (2 * RC_LINE_PIECES);
+  int count = half < 2 ? 4 : (int)(2 * half);
+  if (!straight_source(f, split, ((float)piece + .5f) / RC_LINE_PIECES, &x, &y)) return false;
+  *kept = -1;
+  for (float step = -MOST_BEND_PX; step <= MOST_BEND_PX; step += PINNED_STEP_PX) {
+    float across = before + step, px = x - f->ruler.uy * across, py = y + f->ruler.ux * across;
+    if (!rc_profile_mean(&f->ruler, px, py, .5f - half, 1, count, mean)) continue;
+    float here = rc_profile_dot(mean, own) / fmaxf(rc_profile_dot(own, own), 1e-12f);
+    if (here <= *kept) continue;
+    *kept = here, *bend = across;
+    f->line->from_x[piece] = px, f->line->from_y[piece] = py;
+  }
+  return *kept > -1;
+}
+
+/* Pieces before split come from beyond a, the others from beyond b, each followed from the hole
+ * outwards. The part of the contrast that is kept. */
+static float follow_both(const frame *f, float split, const float own_a[RC_PROFILE],
+                         const float own_b[RC_PROFILE]) {
+  int middle = (int)(split * RC_LINE_PIECES);
+  float bend = 0, sum = 0, kept;
+  for (int piece = middle - 1; piece >= 0; piece--) {
+    if (!follow_piece(f, split, piece, own_a, &bend, &kept)) return 0;
+    sum += fmaxf(fminf(kept, 1), 0);
+  }
+  bend = 0;
+  for (int piece = middle; piece < RC_LINE_PIECES; piece++) {
+    if (!follow_piece(f, split, piece, own_b, &bend, &kept)) return 0;
+    sum += fmaxf(fminf(kept, 1), 0);
+  }
+  return sum / RC_LINE_PIECES;
+}
+
+bool rc_follow(const rc_brightness *picture, const rc_chart *chart, rc_crossing *line) {
+  static const float splits[] = {1, 0, .5f, .25f, .75f};
+  float own_a[RC_PROFILE], own_b[RC_PROFILE], most = LEAST_KEPT;
+  rc_crossing best;
+  bool found = false;
+  frame f = {.ruler = {.value = source_at, .picture = picture}, .chart = chart, .line = line};
+  set_frame(&f);
+  if (!pin(&f, -1, &line->ax, &line->ay, own_a) || !pin(&f, 1, &line->bx, &line->by, own_b))
+    return false;
+  set_frame(&f);
+  for (size_t i = 0; i < sizeof splits / sizeof *splits; i++) {
+    float kept = follow_both(&f, splits[i], own_a, own_b);
+    if (kept <= most) continue;
+    most = kept, best = *line, found = true;
+  }
+  if (found) *line = best;
+  return found;
+}

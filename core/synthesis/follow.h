@@ -1,0 +1,23 @@
+/* Follows a line that crosses the hole to both sides of it, and says where to take it from. */
+#ifndef RECEDE_SYNTHESIS_FOLLOW_H
+#define RECEDE_SYNTHESIS_FOLLOW_H
+
+#include "synthesis/lines.h"
+#include "synthesis/profile.h"
+
+/* Where a line's profile begins outside the hole. */
+#define RC_PROFILE_FROM_PX 2.f
+/* A line's own profile is that of so many px. */
+#define RC_PROFILE_NEAR_PX 14
+
+/* One level of the picture, brightness alone. */
+typedef struct rc_brightness {
+  const rc_mask *flags;
+  const float *value;
+} rc_brightness;
+
+/* Moves the line's ends to where it meets the hole and sets its pieces' sources. False: it fades or
+ * leaves the picture before the hole could be crossed. chart: of the same level. */
+bool rc_follow(const rc_brightness *picture, const rc_chart *chart, rc_crossing *line);
+
+#endif

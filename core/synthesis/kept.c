@@ -1,0 +1,56 @@
+#include "synthesis/kept.h"
+
+#include <math.h>
+
+#include "synthesis/follow.h"
+#include "synthesis/profile.h"
+
+/* At coarse levels a line's own profile needs so many px still, and each piece. */
+#define LEAST_NEAR_PX 4
+#define LEAST_PIECE_PX 2
+
+static bool value_at(const rc_level *level, int x, int y, int wanted, float *value) {
+  if (!rc_inside(level->width, level->height, x, y)) return false;
+  size_t at = (size_t)y * (size_t)level->width + (size_t)x;
+  uint32_t pixel = level->pixels[at];
+  *value = .3f * (float)(pixel & 255) + .59f * (float)(pixel >> 8 & 255) +
+           .11f * (float)(pixel >> 16 & 255);
+  return (level->flags[at] & wanted) != 0;
+}
+
+static bool outside(const void *level, int x, int y, float *value) {
+  return value_at(level, x, y, RC_SOURCE, value);
+}
+
+static bool everywhere(const void *level, int x, int y, float *value) {
+  return value_at(level, x, y, RC_KNOWN | RC_TARGET, value);
+}
+
+static double line_kept(const rc_level *level, const rc_crossing *line, int exponent) {
+  float unit = (float)(1 << exponent), own[2][RC_PROFILE], mean[RC_PROFILE], sum = 0;
+  float ax = (line->ax + .5f) / unit - .5f, ay = (line->ay + .5f) / unit - .5f;
+  float dx = (line->bx - line->ax) / unit, dy = (line->by - line->ay) / unit;
+  float length = sqrtf(dx * dx + dy * dy), piece_px = length / RC_LINE_PIECES;
+  int near = (int)fmaxf(RC_PROFILE_NEAR_PX / unit, LEAST_NEAR_PX);
+  int count = (int)fmaxf(piece_px, LEAST_PIECE_PX);
+  rc_ruler ruler = {outside, level, dx / length, dy / length};
+  if (!rc_profile_mean(&ruler, ax, ay, -RC_PROFILE_FROM_PX, -1, near, own[0]) ||
+      !rc_profile_mean(&ruler, ax + dx, ay + dy, RC_PROFILE_FROM_PX, 1, near, own[1]))
+    return 1;
+  ruler.value = everywhere;
+  for (int piece = 0; piece < RC_LINE_PIECES; piece++) {
+    const float *wanted = own[2 * piece >= RC_LINE_PIECES];
+    float t = (float)piece / RC_LINE_PIECES, square = rc_profile_dot(wanted, wanted);
+    if (!rc_profile_mean(&ruler, ax + t * dx, ay + t * dy, .5f, piece_px / (float)count, count,
+                         mean))
+      continue;
+    sum += fmaxf(fminf(rc_profile_dot(mean, wanted) / fmaxf(square, 1e-6f), 1), 0);
+  }
+  return sum / RC_LINE_PIECES;
+}
+
+double rc_lines_kept(const rc_level *level, const rc_crossing *lines, int count, int exponent) {
+  double sum = 0;
+  for (int i = 0; i < count; i++) sum += line_kept(level, &lines[i], exponent);
+  return count ? sum / count : 1;
+}

@@ -1,0 +1,324 @@
+#include "synthesis/lines.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "synthesis/follow.h"
+
+/* Profiles are averaged along a run outside the hole. */
+#define RUN 16      /* samples */
+#define STEP_PX 2.f /* between them */
+#define DIRECTIONS 128
+/* Lines are looked for at the finest level whose hole has at most so many border pixels. */
+#define MOST_BORDER 800
+/* Signal to noise on both sides. Edges of stones reach 7, so one line must have more, and those
+ * parallel to it, which are less likely there by chance, a little. */
+#define LEAST_STRENGTH 8.f
+#define LEAST_LEADING_STRENGTH 12.f
+/* How alike both sides' profiles must be: their correlation, and one's amplitude over the other's,
+ * for lines fade. */
+#define LEAST_LIKENESS .85f
+#define MOST_UNLIKE 4.f
+#define STRAIGHT .9945f /* cosine of 6 degrees: both runs and what connects them */
+#define PARALLEL .9976f /* of 4 degrees, in the plane */
+#define SHORTEST_PX 12.f
+#define LEAST_INSIDE .7f /* of a line between its ends */
+/* Ends are moved by up to so much to where the line is clearest. */
+#define REFINED_STEP_PX .5f
+#define REFINED_PLACES 17 /* 4 px to each side */
+/* Of border pixels so near to each other the strongest is looked at. */
+#define APART_PX 2
+
+typedef struct profile {
+  float mean[RC_PROFILE];
+  float strength; /* signal to noise; 0: not enough known pixels */
+  float clarity;  /* how much changes in its middle */
+} profile;
+
+typedef struct finder {
+  rc_brightness picture;
+  const int32_t *border; /* pixels */
+  int border_count;
+  float (*direction)[2];
+  profile *best; /* of each border pixel, its strongest direction */
+  int *best_direction;
+} finder;
+
+/* Of the change from one sample to the next. */
+static const float middle[RC_PROFILE] = {0, .2f, .6f, 1, 1, .6f, .2f};
+
+/* The run that begins at (x, y) and leaves along outwards u, read across u. */
+static profile measure(const finder *f, float x, float y, float ux, float uy, float outwards) {
+  profile p = {.strength = 0};
+  const rc_mask *flags = f->picture.flags;
+  int counts[RC_PROFILE] = {0};
+  float square[RC_PROFILE] = {0}, noise = 0, centre = 0, signal = 0;
+  for (int k = 0; k < RUN; k++)
+    for (int o = 0; o < RC_PROFILE; o++) {
+      float along = outwards * (RC_PROFILE_FROM_PX + STEP_PX * (float)k);
+      float across = (float)(o - RC_PROFILE_HALF);
+      int px = (int)floorf(x + ux * along - uy * across + .5f);
+      int py = (int)floorf(y + uy * along + ux * across + .5f);
+      if (!rc_inside(flags->width, flags->height, px, py)) continue;
+      size_t at = (size_t)py * (size_t)flags->width + (size_t)px;
+      if (!(flags->data[at] & RC_SOURCE)) continue;
+      float value = f->picture.value[at];
+      p.mean[o] += value, square[o] += value * value, counts[o]++;
+    }
+  for (int o = 0; o < RC_PROFILE; o++) {
+    if (counts[o] < RUN * 3 / 4) return p;
+    p.mean[o] /= (float)counts[o];
+    noise += square[o] / (float)counts[o] - p.mean[o] * p.mean[o];
+    centre += p.mean[o] / RC_PROFILE;
+  }
+  for (int o = 0; o < RC_PROFILE; o++) {
+    p.mean[o] -= centre;
+    float change = o ? p.mean[o] - p.mean[o - 1] : 0;
+    signal += p.mean[o] * p.mean[o];
+    p.clarity += middle[o] * change * change;
+  }
+  /* Neighbouring samples are alike: half of them count. */
+  p.strength = signal / fmaxf(noise / (RUN / 2), 1e-6f);
+  return p;
+}
+
+static void search_border(void *user, int item, int thread) {
+  finder *f = user;
+  float x = (float)(f->border[item] % f->picture.flags->width);
+  float y = (float)(f->border[item] / f->picture.flags->width);
+  (void)thread;
+  f->best[item] = (profile){.strength = 0};
+  for (int d = 0; d < DIRECTIONS; d++) {
+    profile p = measure(f, x, y, f->direction[d][0], f->direction[d][1], 1);
+    if (p.strength <= f->best[item].strength) continue;
+    f->best[item] = p;
+    f->best_direction[item] = d;
+  }
+}
+
+static bool alike(const profile *a, const profile *b) {
+  float aa = 0, bb = 0, ab = 0, most = MOST_UNLIKE * MOST_UNLIKE;
+  for (int o = 0; o < RC_PROFILE; o++) {
+    aa += a->mean[o] * a->mean[o], bb += b->mean[o] * b->mean[o], ab += a->mean[o] * b->mean[o];
+  }
+  return ab > LEAST_LIKENESS * sqrtf(aa * bb) && aa < most * bb && bb < most * aa;
+}
+
+static bool crosses_the_hole(const rc_mask *flags, const rc_crossing *c) {
+  int inside = 0, samples = 32;
+  for (int i = 1; i < samples; i++) {
+    float t = (float)i / (float)samples;
+    int x = (int)floorf(c->ax + t * (c->bx - c->ax) + .5f);
+    int y = (int)floorf(c->ay + t * (c->by - c->ay) + .5f);
+    inside += (*rc_flag(flags, x, y) & RC_TARGET) != 0;
+  }
+  return (float)inside > LEAST_INSIDE * (float)samples;
+}
+
+/* Moves both ends across the line to where it is clearest on both sides. The direction changes with
+ * that, so it is done twice. */
+static void refine(const finder *f, rc_crossing *c) {
+  profile a[REFINED_PLACES], b[REFINED_PLACES];
+  for (int round = 0; round < 2; round++) {
+    float dx = c->bx - c->ax, dy = c->by - c->ay, length = sqrtf(dx * dx + dy * dy), most = 0;
+    float ux = dx / length, uy = dy / length;
+    rc_crossing from = *c;
+    c->strength = 0;
+    for (int i = 0; i < REFINED_PLACES; i++) {
+      float across = REFINED_STEP_PX * (float)(i - REFINED_PLACES / 2);
+      a[i] = measure(f, from.ax - across * uy, from.ay + across * ux, ux, uy, -1);
+      b[i] = measure(f, from.bx - across * uy, from.by + across * ux, ux, uy, 1);
+    }
+    for (int i = 0; i < REFINED_PLACES; i++)
+      for (int k = 0; k < REFINED_PLACES; k++) {
+        float strength = fminf(a[i].strength, b[k].strength);
+        float clarity = fminf(a[i].clarity, b[k].clarity);
+        if (strength < LEAST_STRENGTH || clarity <= most || !alike(&a[i], &b[k])) continue;
+        float p = REFINED_STEP_PX * (float)(i - REFINED_PLACES / 2);
+        float q = REFINED_STEP_PX * (float)(k - REFINED_PLACES / 2);
+        most = clarity;
+        *c = (rc_crossing){.ax = from.ax - p * uy, .ay = from.ay + p * ux,
+                           .bx = from.bx - q * uy, .by = from.by + q * ux, .strength = strength};
+      }
+    if (c->strength == 0) return;
+  }
+}
+
+static float point_to_line(const rc_crossing *c, float x, float y) {
+  float dx = c->bx - c->ax, dy = c->by - c->ay;
+  return fabsf((x - c->ax) * dy - (y - c->ay) * dx) / sqrtf(dx * dx + dy * dy);
+}
+
+/* Strongest first; of lines that run into one another the stronger stays. */
+static void keep(rc_crossing lines[RC_MOST_LINES], int *count, rc_crossing c) {
+  int at = 0;
+  for (int i = 0; i < *count; i++) {
+    rc_crossing *old = &lines[i];
+    if (point_to_line(old, c.ax, c.ay) > RC_PROFILE && point_to_line(old, c.bx, c.by) > RC_PROFILE)
+      continue;
+    if (old->strength >= c.strength) return;
+    memmove(old, old + 1, (size_t)(*count - i - 1) * sizeof *old);
+    (*count)--, i--;
+  }
+  while (at < *count && lines[at].strength >= c.strength) at++;
+  if (at == RC_MOST_LINES) return;
+  int moved = (*count < RC_MOST_LINES ? *count : RC_MOST_LINES - 1) - at;
+  memmove(&lines[at + 1], &lines[at], (size_t)moved * sizeof c);
+  lines[at] = c;
+  if (*count < RC_MOST_LINES) (*count)++;
+}
+
+/* Whether a border pixel is the strongest around. */
+static bool stands_out(const finder *f, int item) {
+  int width = f->picture.flags->width, own = f->border[item];
+  float strength = f->best[item].strength;
+  if (strength < LEAST_STRENGTH) return false;
+  for (int i = 0; i < f->border_count; i++) {
+    int dx = f->border[i] % width - own % width, dy = f->border[i] / width - own / width;
+    if (dx * dx + dy * dy > APART_PX * APART_PX || i == item) continue;
+    if (f->best[i].strength > strength || (f->best[i].strength == strength && i < item))
+      return false;
+  }
+  return true;
+}
+
+static void pair_up(const finder *f, rc_crossing lines[RC_MOST_LINES], int *count) {
+  int width = f->picture.flags->width;
+  for (int i = 0; i < f->border_count; i++) {
+    if (!stands_out(f, i)) continue;
+    for (int j = i + 1; j < f->border_count; j++) {
+      if (f->best[j].strength < LEAST_STRENGTH) continue;
+      const float *u = f->direction[f->best_direction[i]], *v = f->direction[f->best_direction[j]];
+      rc_crossing c = {
+          .ax = (float)(f->border[i] % width), .ay = (float)(f->border[i] / width),
+          .bx = (float)(f->border[j] % width), .by = (float)(f->border[j] / width)};
+      float dx = c.ax - c.bx, dy = c.ay - c.by, length = sqrtf(dx * dx + dy * dy);
+      if (length < SHORTEST_PX || dx * u[0] + dy * u[1] < STRAIGHT * length ||
+          dx * v[0] + dy * v[1] > -STRAIGHT * length ||
+          !crosses_the_hole(f->picture.flags, &c) || !stands_out(f, j))
+        continue;
+      refine(f, &c);
+      if (c.strength >= LEAST_STRENGTH) keep(lines, count, c);
+    }
+  }
+}
+
+/* A line's direction in the plane. */
+static rc_copy direction_of(const rc_chart *chart, const rc_crossing *c) {
+  rc_chart flat = *chart;
+  flat.raised = false;
+  rc_copy d = rc_copy_between(&flat, c->ax - flat.x0, c->ay - flat.y0, c->bx - flat.x0,
+                              c->by - flat.y0);
+  float length = sqrtf(d.a * d.a + d.b * d.b);
+  return (rc_copy){d.a / length, d.b / length, 0.f};
+}
+
+static bool parallel(rc_copy p, rc_copy q) { return fabsf(p.a * q.a + p.b * q.b) > PARALLEL; }
+
+static float length_of(const rc_crossing *c) {
+  float dx = c->bx - c->ax, dy = c->by - c->ay;
+  return sqrtf(dx * dx + dy * dy);
+}
+
+/* Keeps one direction, that of the greatest length together: where two would cross, each needs
+ * another copy. */
+static void keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES], int *count) {
+  rc_copy directions[RC_MOST_LINES];
+  float most = 0;
+  int leading = -1, kept = 0;
+  for (int i = 0; i < *count; i++) directions[i] = direction_of(chart, &lines[i]);
+  for (int i = 0; i < *count && lines[i].strength >= LEAST_LEADING_STRENGTH; i++) {
+    float sum = 0;
+    for (int k = 0; k < *count; k++)
+      if (parallel(directions[i], directions[k])) sum += length_of(&lines[k]);
+    if (sum > most) most = sum, leading = i;
+  }
+  for (int i = 0; i < *count && leading >= 0; i++)
+    if (parallel(directions[i], directions[leading])) lines[kept++] = lines[i];
+  *count = kept;
+}
+
+/* Keeps what can be continued, in px of the finest level. */
+static void follow(const finder *f, const rc_chart *chart, int exponent,
+                   rc_crossing lines[RC_MOST_LINES], int *count) {
+  int kept = 0;
+  float unit = (float)(1 << exponent);
+  for (int i = 0; i < *count; i++) {
+    rc_crossing c = lines[i];
+    if (!rc_follow(&f->picture, chart, &c)) continue;
+    float *all[] = {&c.ax, &c.ay, &c.bx, &c.by};
+    for (int k = 0; k < 4; k++) *all[k] = (*all[k] + .5f) * unit - .5f;
+    for (int k = 0; k < RC_LINE_PIECES; k++) {
+      c.from_x[k] = (c.from_x[k] + .5f) * unit - .5f;
+      c.from_y[k] = (c.from_y[k] + .5f) * unit - .5f;
+    }
+    lines[kept++] = c;
+  }
+  *count = kept;
+}
+
+/* Target pixels that touch known ones; border may be NULL. */
+static int collect_border(const rc_mask *flags, int32_t *border) {
+  int count = 0;
+  for (int y = 1; y + 1 < flags->height; y++)
+    for (int x = 1; x + 1 < flags->width; x++) {
+      if (!(*rc_flag(flags, x, y) & RC_TARGET)) continue;
+      int beside = *rc_flag(flags, x - 1, y) | *rc_flag(flags, x + 1, y) |
+                   *rc_flag(flags, x, y - 1) | *rc_flag(flags, x, y + 1);
+      if (!(beside & RC_KNOWN)) continue;
+      if (border) border[count] = y * flags->width + x;
+      count++;
+    }
+  return count;
+}
+
+static void set_brightness(const rc_image *image, float *value) {
+  size_t count = (size_t)image->width * (size_t)image->height;
+  for (size_t i = 0; i < count; i++)
+    value[i] = image->channels == 1 ? image->data[i]
+                                    : .3f * image->data[3 * i] + .59f * image->data[3 * i + 1] +
+                                          .11f * image->data[3 * i + 2];
+}
+
+static void set_directions(float (*direction)[2]) {
+  const double c = .9987954562051724, s = .049067674327418015; /* of 360 / DIRECTIONS degrees */
+  double x = 1, y = 0;
+  for (int d = 0; d < DIRECTIONS; d++) {
+    direction[d][0] = (float)x, direction[d][1] = (float)y;
+    double next = x * c - y * s;
+    y = x * s + y * c, x = next;
+  }
+}
+
+recede_status rc_lines_find(rc_context *context, const rc_image *images, const rc_mask *masks,
+                            int levels, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
+                            int *count) {
+  float direction[DIRECTIONS][2], *brightness;
+  int32_t *border;
+  int exponent = 0, border_count = collect_border(&masks[0], NULL);
+  *count = 0;
+  while (exponent + 1 < levels && border_count > MOST_BORDER)
+    border_count = collect_border(&masks[++exponent], NULL);
+  if (!border_count || border_count > MOST_BORDER) return RECEDE_OK;
+  const rc_image *image = &images[exponent];
+  finder f = {.direction = direction, .border_count = border_count};
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, (size_t)image->width * (size_t)image->height, &brightness));
+  RC_TRY(RC_NEW(context, border_count, &border));
+  RC_TRY(RC_NEW(context, border_count, &f.best));
+  RC_TRY(RC_NEW_ZERO(context, border_count, &f.best_direction));
+  collect_border(&masks[exponent], border);
+  set_brightness(image, brightness);
+  set_directions(direction);
+  f.picture = (rc_brightness){&masks[exponent], brightness};
+  f.border = border;
+  RC_TRY(rc_parallel(context, border_count, search_border, &f));
+  rc_chart here = rc_chart_coarser(*chart, exponent);
+  pair_up(&f, lines, count);
+  keep_parallel(&here, lines, count);
+  follow(&f, &here, exponent, lines, count);
+  rc_release(context, mark);
+  return RECEDE_OK;
+}

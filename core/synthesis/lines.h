@@ -1,0 +1,25 @@
+/* Lines that run through the hole: cracks, kerbs, markings, the joints of boards. A patch sees too
+ * little of one to carry it across. So they are found on both sides of the hole, followed there, and
+ * the texture along them is moved in by pieces that keep each line where it must be. */
+#ifndef RECEDE_SYNTHESIS_LINES_H
+#define RECEDE_SYNTHESIS_LINES_H
+
+#include "synthesis/level.h"
+
+#define RC_MOST_LINES 8
+#define RC_LINE_PIECES 8
+
+/* A line from the hole's border at a to that at b, px of the finest level. */
+typedef struct rc_crossing {
+  float ax, ay, bx, by;
+  float strength;                                       /* signal to noise of its weaker side */
+  float from_x[RC_LINE_PIECES], from_y[RC_LINE_PIECES]; /* where each piece's middle comes from */
+} rc_crossing;
+
+/* Parallel lines of the plane that cross the hole and can be continued, strongest first. images and
+ * masks: the pyramid's levels, finest first; chart: of the finest. */
+recede_status rc_lines_find(rc_context *context, const rc_image *images, const rc_mask *masks,
+                            int levels, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
+                            int *count);
+
+#endif
