@@ -20,11 +20,9 @@
 #define PERIOD_TRIES 3
 #define PASSES 2
 /* Broken lines are seen first: they cost on top of a start's misfit, and starts that continue them
- * one by one may fit worse, for finer levels break what the coarsest still has. A lattice carries
- * its own lines: those fit 1.2 to 3 times worse with bricks and tiles. */
+ * one by one may fit worse, for finer levels break what the coarsest still has. */
 #define PRICE_OF_BROKEN_LINES .3
 #define FAVOUR_OF_LINES 1.3
-#define FAVOUR_ON_LATTICE 1.1
 
 /* What the quality levels change. */
 typedef struct effort {
@@ -155,12 +153,17 @@ static recede_status run_coarsest(rc_context *context, rc_descent *e, rc_level *
                                   workspace *scratch) {
   int exponent = e->level_count - 1, wanted = e->params->engine_starts;
   int plain = rc_trials_worth(level, wanted ? wanted : effort_of(e)->starts);
-  int trials = e->line_count ? plain + (plain + 1) / 2 : plain;
   uint64_t key = rc_key((uint64_t)e->params->seed, 99, 0);
   double misfit, misfit_with_lines;
   rc_trial best, with_lines;
+  bool lattice = false;
   if (e->params->engine_periods)
-    RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count, &e->lattice));
+    RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count, &lattice));
+  /* Bricks and tiles carry their own lines: continued one by one those fit 1.2 to 3 times worse. */
+  if (e->params->engine_lines && !lattice)
+    RC_TRY(rc_lines_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
+                         &e->line_count));
+  int trials = e->line_count ? plain + (plain + 1) / 2 : plain;
   if (trials == 1) {
     RC_TRY(start_once(context, e, 0, level));
     return iterate(context, e, exponent, 0, 1, level, scratch);
@@ -174,8 +177,7 @@ static recede_status run_coarsest(rc_context *context, rc_descent *e, rc_level *
     RC_TRY(try_starts(context, e, plain, trials, trials, level, scratch, &with_lines,
                       &misfit_with_lines));
     misfit_with_lines += price_of_broken_lines(e, level, &with_lines);
-    e->continue_lines =
-        misfit_with_lines < (e->lattice ? FAVOUR_ON_LATTICE : FAVOUR_OF_LINES) * misfit;
+    e->continue_lines = misfit_with_lines < FAVOUR_OF_LINES * misfit;
     if (e->continue_lines) return RECEDE_OK;
     RC_FREE(context, &level->locked);
   }
@@ -204,9 +206,6 @@ static recede_status run_level(rc_context *context, rc_descent *e, int exponent,
 recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
   rc_level coarser = {0}, level = {0};
   float gamma = e->params->engine_confidence ? CONFIDENCE_FALLOFF : 1.f;
-  if (e->params->engine_lines)
-    RC_TRY(rc_lines_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
-                         &e->line_count));
   for (int exponent = e->level_count - 1; exponent >= 0; exponent--) {
     bool coarsest = exponent == e->level_count - 1;
     rc_chart chart = rc_chart_coarser(e->chart, exponent);

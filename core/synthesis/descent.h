@@ -18,7 +18,6 @@ typedef struct rc_descent {
   rc_mask flags[RC_MAX_LEVELS];
   rc_copy periods[RC_MOST_PERIODS]; /* px of the coarsest level */
   int period_count;
-  bool lattice;                     /* they repeat in two directions */
   rc_crossing lines[RC_MOST_LINES]; /* px of the finest level */
   int line_count;
   bool continue_lines; /* starts that did fitted better */

@@ -45,7 +45,8 @@ static bool pin(const frame *f, float outwards, float *x, float *y, float own[RC
   float from = outwards * RC_PROFILE_FROM_PX;
   if (!rc_profile_mean(&f->ruler, *x, *y, from, outwards, FAR_PX, far)) return false;
   for (float across = -PINNED_WITHIN_PX; across <= PINNED_WITHIN_PX; across += PINNED_STEP_PX) {
-    if (!rc_profile_mean(&f->ruler, *x - f->ruler.uy * across, *y + f->ruler.ux * across, from, outwards, RC_PROFILE_NEAR_PX, near))
+    if (!rc_profile_mean(&f->ruler, *x - f->ruler.uy * across, *y + f->ruler.ux * across, from,
+                         outwards, RC_PROFILE_NEAR_PX, near))
       continue;
     float likeness = 2 * rc_profile_dot(near, far) - rc_profile_dot(near, near);
     if (likeness > most) most = likeness, moved = across;

@@ -139,8 +139,11 @@ static void refine(const finder *f, rc_crossing *c) {
         float p = REFINED_STEP_PX * (float)(i - REFINED_PLACES / 2);
         float q = REFINED_STEP_PX * (float)(k - REFINED_PLACES / 2);
         most = clarity;
-        *c = (rc_crossing){.ax = from.ax - p * uy, .ay = from.ay + p * ux,
-                           .bx = from.bx - q * uy, .by = from.by + q * ux, .strength = strength};
+        *c = (rc_crossing){.ax = from.ax - p * uy,
+                           .ay = from.ay + p * ux,
+                           .bx = from.bx - q * uy,
+                           .by = from.by + q * ux,
+                           .strength = strength};
       }
     if (c->strength == 0) return;
   }
@@ -191,13 +194,14 @@ static void pair_up(const finder *f, rc_crossing lines[RC_MOST_LINES], int *coun
     for (int j = i + 1; j < f->border_count; j++) {
       if (f->best[j].strength < LEAST_STRENGTH) continue;
       const float *u = f->direction[f->best_direction[i]], *v = f->direction[f->best_direction[j]];
-      rc_crossing c = {
-          .ax = (float)(f->border[i] % width), .ay = (float)(f->border[i] / width),
-          .bx = (float)(f->border[j] % width), .by = (float)(f->border[j] / width)};
+      rc_crossing c = {.ax = (float)(f->border[i] % width),
+                       .ay = (float)(f->border[i] / width),
+                       .bx = (float)(f->border[j] % width),
+                       .by = (float)(f->border[j] / width)};
       float dx = c.ax - c.bx, dy = c.ay - c.by, length = sqrtf(dx * dx + dy * dy);
       if (length < SHORTEST_PX || dx * u[0] + dy * u[1] < STRAIGHT * length ||
-          dx * v[0] + dy * v[1] > -STRAIGHT * length ||
-          !crosses_the_hole(f->picture.flags, &c) || !stands_out(f, j))
+          dx * v[0] + dy * v[1] > -STRAIGHT * length || !crosses_the_hole(f->picture.flags, &c) ||
+          !stands_out(f, j))
         continue;
       refine(f, &c);
       if (c.strength >= LEAST_STRENGTH) keep(lines, count, c);
@@ -209,8 +213,8 @@ static void pair_up(const finder *f, rc_crossing lines[RC_MOST_LINES], int *coun
 static rc_copy direction_of(const rc_chart *chart, const rc_crossing *c) {
   rc_chart flat = *chart;
   flat.raised = false;
-  rc_copy d = rc_copy_between(&flat, c->ax - flat.x0, c->ay - flat.y0, c->bx - flat.x0,
-                              c->by - flat.y0);
+  rc_copy d =
+      rc_copy_between(&flat, c->ax - flat.x0, c->ay - flat.y0, c->bx - flat.x0, c->by - flat.y0);
   float length = sqrtf(d.a * d.a + d.b * d.b);
   return (rc_copy){d.a / length, d.b / length, 0.f};
 }

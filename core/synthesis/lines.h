@@ -1,6 +1,6 @@
 /* Lines that run through the hole: cracks, kerbs, markings, the joints of boards. A patch sees too
- * little of one to carry it across. So they are found on both sides of the hole, followed there, and
- * the texture along them is moved in by pieces that keep each line where it must be. */
+ * little of one to carry it across. So they are found on both sides of the hole, followed there,
+ * and the texture along them is moved in by pieces that keep each line where it must be. */
 #ifndef RECEDE_SYNTHESIS_LINES_H
 #define RECEDE_SYNTHESIS_LINES_H
 

@@ -46,7 +46,8 @@ static double part_continued(const drawn *line, int seed, const char *settings) 
 }
 
 static double mean_continued(const char *settings) {
-  static const drawn lines[] = {{120, 0, 0}, {70, .3, 0}, {170, -.3, 0}, {60, .4, 0}, {110, 0, .0001}};
+  static const drawn lines[] = {
+      {120, 0, 0}, {70, .3, 0}, {170, -.3, 0}, {60, .4, 0}, {110, 0, .0001}};
   double sum = 0;
   for (guint i = 0; i < G_N_ELEMENTS(lines); i++) {
     double here = 0;
@@ -59,7 +60,8 @@ static double mean_continued(const char *settings) {
 }
 
 static void lines_go_on(void) {
-  double with = mean_continued("surface=flat"), without = mean_continued("surface=flat engine-lines=0");
+  double with = mean_continued("surface=flat"),
+         without = mean_continued("surface=flat engine-lines=0");
   g_assert_cmpfloat(with, >, without + .1);
   g_assert_cmpfloat(with, >, .9);
 }
