@@ -54,6 +54,9 @@ static int iterations_at(const rc_descent *e, int exponent) {
   return here > least ? here : least;
 }
 
+/* The finest level that is searched: what it settles on is composed. */
+static int last_searched(const rc_descent *e) { return iterations_at(e, 0) ? 0 : 1; }
+
 static rc_search search_of(const rc_descent *e, int exponent, int trial, int iteration, int pass) {
   bool coarsest = exponent == e->level_count - 1;
   return (rc_search){.kernels = e->kernels,
@@ -70,12 +73,11 @@ static rc_search search_of(const rc_descent *e, int exponent, int trial, int ite
 }
 
 /* Propagation alone, with a higher price on incoherence: whole copies for the composition. */
-static recede_status settle(rc_context *context, const rc_descent *e, rc_level *level, rc_copy *old,
-                            bool recost) {
+static recede_status settle(rc_context *context, const rc_descent *e, rc_level *level,
+                            rc_copy *old) {
   for (int pass = 0; pass < PASSES; pass++) {
     rc_search search = {.kernels = e->kernels,
                         .pass = pass,
-                        .recost = recost && pass == 0,
                         .coherence = e->params->engine_coherence ? COHERENCE_OF_COMPOSITION : 0.f};
     RC_TRY(rc_search_pass(context, level, &search, old));
   }
@@ -195,9 +197,7 @@ static recede_status run_level(rc_context *context, rc_descent *e, int exponent,
     if (e->continue_lines) RC_TRY(rc_lines_lock(context, e->lines, e->line_count, exponent, level));
     RC_TRY(iterate(context, e, exponent, 0, 1, level, &scratch));
   }
-  bool untouched = !iterations_at(e, exponent);
-  if (untouched) RC_TRY(rc_vote(context, level));
-  if (exponent == 0) RC_TRY(settle(context, e, level, scratch.old, untouched));
+  if (exponent == last_searched(e)) RC_TRY(settle(context, e, level, scratch.old));
   level->locked = NULL;
   rc_release(context, mark);
   return RECEDE_OK;
