@@ -60,8 +60,8 @@ static double mean_continued(const char *settings) {
 }
 
 static void lines_go_on(void) {
-  double with = mean_continued("surface=flat"),
-         without = mean_continued("surface=flat engine-lines=0");
+  double with = mean_continued("quality=draft"),
+         without = mean_continued("quality=draft engine-lines=0");
   g_assert_cmpfloat(with, >, without + .1);
   g_assert_cmpfloat(with, >, .9);
 }
@@ -73,7 +73,7 @@ static void others_do_not(void) {
   for (int y = 0; y < HEIGHT; y++)
     for (int x = 160; x < WIDTH; x++) picture_set(&p, x, y, 0, picture_get(&plain, x, y, 0));
   picture_clear(&plain);
-  task t = task_new(p, "surface=flat");
+  task t = task_new(p, "quality=draft surface=flat");
   t.params.slant_deg = 30;
   task_hole(&t, hole);
   task_succeeds(&t);
@@ -86,7 +86,7 @@ static void same_for_threads(void) {
   static const drawn lines[] = {{95, 0, 0}, {120, .02, 0}, {150, 0, 0}};
   guint64 hash = 0;
   for (int threads = 1; threads <= 3; threads++) {
-    task t = task_new(floor_with(lines, 3), "surface=flat");
+    task t = task_new(floor_with(lines, 3), "quality=draft surface=flat");
     t.params.slant_deg = 30;
     t.host.threads = threads;
     t.host.kernel = threads - 1;
