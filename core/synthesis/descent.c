@@ -19,10 +19,13 @@
 #define COHERENCE_OF_COMPOSITION .06f
 #define PERIOD_TRIES 3
 #define PASSES 2
-/* Broken lines are seen first: they cost on top of a start's misfit, and starts that continue them
- * one by one may fit worse, for finer levels break what the coarsest still has. */
+/* Broken lines are seen first: they cost on top of a start's misfit. Starts that continue clear
+ * ones may fit worse, for finer levels break what the coarsest still has; boards measure 40 and
+ * more. The crests of waves, 13 to 20, look like lines by chance: continued they must fit better.
+ */
 #define PRICE_OF_BROKEN_LINES .3
-#define FAVOUR_OF_LINES 1.3
+#define CLEAR_LINE 30.f
+#define FAVOUR_OF_CLEAR_LINES 1.3
 
 /* What the quality levels change. */
 typedef struct effort {
@@ -179,7 +182,8 @@ static recede_status run_coarsest(rc_context *context, rc_descent *e, rc_level *
     RC_TRY(try_starts(context, e, plain, trials, trials, level, scratch, &with_lines,
                       &misfit_with_lines));
     misfit_with_lines += price_of_broken_lines(e, level, &with_lines);
-    e->continue_lines = misfit_with_lines < FAVOUR_OF_LINES * misfit;
+    double favour = e->lines[0].strength >= CLEAR_LINE ? FAVOUR_OF_CLEAR_LINES : 1;
+    e->continue_lines = misfit_with_lines < favour * misfit;
     if (e->continue_lines) return RECEDE_OK;
     RC_FREE(context, &level->locked);
   }
