@@ -21,8 +21,8 @@
 #define PASSES 2
 /* Broken lines are seen first: they cost on top of a start's misfit. Starts that continue clear
  * ones may fit worse, for finer levels break what the coarsest still has; boards measure 40 and
- * more. The crests of waves, 13 to 20, look like lines by chance: continued they must fit better.
- */
+ * more. Others must fit better: crests of waves, 13 to 20, look like lines by chance, and bricks
+ * and tiles carry their own. A lattice's lines get one try. */
 #define PRICE_OF_BROKEN_LINES .3
 #define CLEAR_LINE 30.f
 #define FAVOUR_OF_CLEAR_LINES 1.3
@@ -152,8 +152,8 @@ static double price_of_broken_lines(const rc_descent *e, rc_level *level, const 
          (1 - rc_lines_kept(level, e->lines, e->line_count, e->level_count - 1));
 }
 
-/* The coarsest level: starts it several times and keeps the best, then half as often again with the
- * lines continued. */
+/* The coarsest level: starts it several times and keeps the best, then up to half as often again
+ * with the lines continued. */
 static recede_status run_coarsest(rc_context *context, rc_descent *e, rc_level *level,
                                   workspace *scratch) {
   int exponent = e->level_count - 1, wanted = e->params->engine_starts;
@@ -164,11 +164,10 @@ static recede_status run_coarsest(rc_context *context, rc_descent *e, rc_level *
   bool lattice = false;
   if (e->params->engine_periods)
     RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count, &lattice));
-  /* Bricks and tiles carry their own lines: continued one by one those fit 1.2 to 3 times worse. */
-  if (e->params->engine_lines && !lattice)
+  if (e->params->engine_lines)
     RC_TRY(rc_lines_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
                          &e->line_count));
-  int trials = e->line_count ? plain + (plain + 1) / 2 : plain;
+  int trials = plain + (e->line_count == 0 ? 0 : lattice ? 1 : (plain + 1) / 2);
   if (trials == 1) {
     RC_TRY(start_once(context, e, 0, level));
     return iterate(context, e, exponent, 0, 1, level, scratch);
@@ -182,7 +181,8 @@ static recede_status run_coarsest(rc_context *context, rc_descent *e, rc_level *
     RC_TRY(try_starts(context, e, plain, trials, trials, level, scratch, &with_lines,
                       &misfit_with_lines));
     misfit_with_lines += price_of_broken_lines(e, level, &with_lines);
-    double favour = e->lines[0].strength >= CLEAR_LINE ? FAVOUR_OF_CLEAR_LINES : 1;
+    bool clear = !lattice && e->lines[0].strength >= CLEAR_LINE;
+    double favour = clear ? FAVOUR_OF_CLEAR_LINES : 1;
     e->continue_lines = misfit_with_lines < favour * misfit;
     if (e->continue_lines) return RECEDE_OK;
     RC_FREE(context, &level->locked);

@@ -90,21 +90,32 @@ static bool follow_piece(const frame *f, float split, int piece, const float own
   return *kept > -1;
 }
 
-/* Pieces before split come from beyond a, the others from beyond b, each followed from the hole
- * outwards. The part of the contrast that is kept. */
+/* The pieces from first on, away from the split, each from where a move of the whole group puts it,
+ * followed from the hole outwards. Where the picture ends the next piece begins a group of its own,
+ * beside the hole again. Adds what is kept to sum. */
+static bool follow_side(const frame *f, int first, int end, int step, const float own[RC_PROFILE],
+                        float *sum) {
+  float bend = 0, kept;
+  for (int piece = first, group = first; piece != end; piece += step) {
+    float split = (float)(step < 0 ? group + 1 : group) / RC_LINE_PIECES;
+    if (!follow_piece(f, split, piece, own, &bend, &kept)) {
+      group = piece, bend = 0, split = (float)(step < 0 ? group + 1 : group) / RC_LINE_PIECES;
+      if (!follow_piece(f, split, piece, own, &bend, &kept)) return false;
+    }
+    *sum += fmaxf(fminf(kept, 1), 0);
+  }
+  return true;
+}
+
+/* Pieces before split come from beyond a, the others from beyond b. The part of the contrast that
+ * is kept. */
 static float follow_both(const frame *f, float split, const float own_a[RC_PROFILE],
                          const float own_b[RC_PROFILE]) {
   int middle = (int)(split * RC_LINE_PIECES);
-  float bend = 0, sum = 0, kept;
-  for (int piece = middle - 1; piece >= 0; piece--) {
-    if (!follow_piece(f, split, piece, own_a, &bend, &kept)) return 0;
-    sum += fmaxf(fminf(kept, 1), 0);
-  }
-  bend = 0;
-  for (int piece = middle; piece < RC_LINE_PIECES; piece++) {
-    if (!follow_piece(f, split, piece, own_b, &bend, &kept)) return 0;
-    sum += fmaxf(fminf(kept, 1), 0);
-  }
+  float sum = 0;
+  if (!follow_side(f, middle - 1, -1, -1, own_a, &sum) ||
+      !follow_side(f, middle, RC_LINE_PIECES, 1, own_b, &sum))
+    return 0;
   return sum / RC_LINE_PIECES;
 }
 

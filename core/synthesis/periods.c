@@ -15,10 +15,11 @@
 #define POINTS 1200
 #define LEAST_SHARED 300
 #define LEAST_PEAK .12f
-/* A lattice repeats as clearly as this in two directions more than 30 degrees apart: bricks and
- * tiles do with .43 to .9, boards and roads do not with .16 to .4 (p_planks reaches .44). */
+/* A lattice repeats as clearly as this in two directions more than 30 degrees apart, and half-way
+ * to it is something else: bricks and tiles, not boards, which are alike all along. */
 #define LEAST_LATTICE .4f
 #define LEAST_SINE .5f
+#define LEAST_ABOVE_HALF_WAY .25f
 
 typedef struct correlation {
   const rc_level *level;
@@ -89,10 +90,18 @@ static int stronger_first(const void *a, const void *b) {
   return p->y != q->y ? (p->y > q->y) - (p->y < q->y) : (p->x > q->x) - (p->x < q->x);
 }
 
+static bool stands_out(const correlation *c, const peak *p) {
+  int dx = (int)lrintf(p->x / 2), dy = (int)lrintf(p->y / 2);
+  return p->value >= LEAST_LATTICE && p->value - value_at(c, dx, dy) >= LEAST_ABOVE_HALF_WAY;
+}
+
 /* Peaks: strongest first. */
-static bool is_lattice(const peak *peaks, int count) {
-  for (int i = 1; i < count && peaks[i].value >= LEAST_LATTICE; i++) {
-    float x = peaks[0].x, y = peaks[0].y, cross = x * peaks[i].y - y * peaks[i].x;
+static bool is_lattice(const correlation *c, const peak *peaks, int count) {
+  const peak *first = NULL;
+  for (int i = 0; i < count && peaks[i].value >= LEAST_LATTICE; i++) {
+    if (!stands_out(c, &peaks[i])) continue;
+    if (!first) first = &peaks[i];
+    float x = first->x, y = first->y, cross = x * peaks[i].y - y * peaks[i].x;
     float squares = (x * x + y * y) * (peaks[i].x * peaks[i].x + peaks[i].y * peaks[i].y);
     if (cross * cross > LEAST_SINE * LEAST_SINE * squares) return true;
   }
@@ -113,7 +122,7 @@ static recede_status collect(rc_context *context, const correlation *c,
                  (float)dy + vertex(value_at(c, dx, dy - 1), own, value_at(c, dx, dy + 1))};
     }
   qsort(peaks, (size_t)found, sizeof *peaks, stronger_first);
-  *lattice = is_lattice(peaks, found);
+  *lattice = is_lattice(c, peaks, found);
   for (int i = 0; i < found && *count + 1 < RC_MOST_PERIODS; i++) {
     periods[(*count)++] = (rc_copy){peaks[i].x, peaks[i].y, 0.f};
     periods[(*count)++] = (rc_copy){-peaks[i].x, -peaks[i].y, 0.f};
