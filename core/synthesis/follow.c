@@ -13,6 +13,9 @@
 /* The part of its contrast that must be left, in the mean over the pieces. Dotted cracks keep .8,
  * what has faded or was followed astray .1 to .4. */
 #define LEAST_KEPT .6f
+/* Another tone, as in the shadow of a rail, costs this per square of the line's own deviation. */
+#define PRICE_OF_TONE .5f
+#define LEAST_OF_PIECE -.5f
 /* Sources may be this much larger or smaller than what they fill. */
 #define WIDEST_RATIO 1.7f
 
@@ -40,15 +43,16 @@ static bool source_at(const void *user, int x, int y, float *value) {
 
 /* Moves an end across the line until its nearest px look like its run does in the mean; outwards is
  * -1 at a and 1 at b. own: the profile there. */
-static bool pin(const frame *f, float outwards, float *x, float *y, float own[RC_PROFILE]) {
-  float far[RC_PROFILE], near[RC_PROFILE], most = -1e30f, moved = 0;
+static bool pin(const frame *f, float outwards, float *x, float *y, rc_profile *own) {
+  rc_profile far, near;
+  float most = -1e30f, moved = 0;
   float from = outwards * RC_PROFILE_FROM_PX;
-  if (!rc_profile_mean(&f->ruler, *x, *y, from, outwards, FAR_PX, far)) return false;
+  if (!rc_profile_mean(&f->ruler, *x, *y, from, outwards, FAR_PX, &far)) return false;
   for (float across = -PINNED_WITHIN_PX; across <= PINNED_WITHIN_PX; across += PINNED_STEP_PX) {
     if (!rc_profile_mean(&f->ruler, *x - f->ruler.uy * across, *y + f->ruler.ux * across, from,
-                         outwards, RC_PROFILE_NEAR_PX, near))
+                         outwards, RC_PROFILE_NEAR_PX, &near))
       continue;
-    float likeness = 2 * rc_profile_dot(near, far) - rc_profile_dot(near, near);
+    float likeness = 2 * rc_profile_dot(&near, &far) - rc_profile_dot(&near, &near);
     if (likeness > most) most = likeness, moved = across;
   }
   *x -= f->ruler.uy * moved, *y += f->ruler.ux * moved;
@@ -72,28 +76,32 @@ static bool straight_source(const frame *f, float split, float t, float *x, floa
 }
 
 /* Finds one piece's source near the straight one, the bend of the piece before taken over. kept:
- * the part of own's contrast that it has. */
-static bool follow_piece(const frame *f, float split, int piece, const float own[RC_PROFILE],
-                         float *bend, float *kept) {
-  float x, y, mean[RC_PROFILE], before = *bend, half = f->length / (2 * RC_LINE_PIECES);
+ * the part of own's contrast that it has, less what its tone is off. False: there is none. */
+static bool follow_piece(const frame *f, float split, int piece, const rc_profile *own, float *bend,
+                         float *kept) {
+  rc_profile here;
+  float x, y, square = fmaxf(rc_profile_dot(own, own), 1e-12f), before = *bend,
+              half = f->length / (2 * RC_LINE_PIECES);
   int count = half < 2 ? 4 : (int)(2 * half);
   if (!straight_source(f, split, ((float)piece + .5f) / RC_LINE_PIECES, &x, &y)) return false;
-  *kept = -1;
+  *kept = LEAST_OF_PIECE;
   for (float step = -MOST_BEND_PX; step <= MOST_BEND_PX; step += PINNED_STEP_PX) {
     float across = before + step, px = x - f->ruler.uy * across, py = y + f->ruler.ux * across;
-    if (!rc_profile_mean(&f->ruler, px, py, .5f - half, 1, count, mean)) continue;
-    float here = rc_profile_dot(mean, own) / fmaxf(rc_profile_dot(own, own), 1e-12f);
-    if (here <= *kept) continue;
-    *kept = here, *bend = across;
+    if (!rc_profile_mean(&f->ruler, px, py, .5f - half, 1, count, &here)) continue;
+    float off = here.tone - own->tone;
+    float part =
+        rc_profile_dot(&here, own) / square - PRICE_OF_TONE * RC_PROFILE * off * off / square;
+    if (part <= *kept) continue;
+    *kept = part, *bend = across;
     f->line->from_x[piece] = px, f->line->from_y[piece] = py;
   }
-  return *kept > -1;
+  return *kept > LEAST_OF_PIECE;
 }
 
 /* The pieces from first on, away from the split, each from where a move of the whole group puts it,
  * followed from the hole outwards. Where the picture ends the next piece begins a group of its own,
  * beside the hole again. Adds what is kept to sum. */
-static bool follow_side(const frame *f, int first, int end, int step, const float own[RC_PROFILE],
+static bool follow_side(const frame *f, int first, int end, int step, const rc_profile *own,
                         float *sum) {
   float bend = 0, kept;
   for (int piece = first, group = first; piece != end; piece += step) {
@@ -109,8 +117,8 @@ static bool follow_side(const frame *f, int first, int end, int step, const floa
 
 /* Pieces before split come from beyond a, the others from beyond b. The part of the contrast that
  * is kept. */
-static float follow_both(const frame *f, float split, const float own_a[RC_PROFILE],
-                         const float own_b[RC_PROFILE]) {
+static float follow_both(const frame *f, float split, const rc_profile *own_a,
+                         const rc_profile *own_b) {
   int middle = (int)(split * RC_LINE_PIECES);
   float sum = 0;
   if (!follow_side(f, middle - 1, -1, -1, own_a, &sum) ||
@@ -121,16 +129,17 @@ static float follow_both(const frame *f, float split, const float own_a[RC_PROFI
 
 bool rc_follow(const rc_brightness *picture, const rc_chart *chart, rc_crossing *line) {
   static const float splits[] = {1, 0, .5f, .25f, .75f};
-  float own_a[RC_PROFILE], own_b[RC_PROFILE], most = LEAST_KEPT;
+  rc_profile own_a, own_b;
+  float most = LEAST_KEPT;
   rc_crossing best;
   bool found = false;
   frame f = {.ruler = {.value = source_at, .picture = picture}, .chart = chart, .line = line};
   set_frame(&f);
-  if (!pin(&f, -1, &line->ax, &line->ay, own_a) || !pin(&f, 1, &line->bx, &line->by, own_b))
+  if (!pin(&f, -1, &line->ax, &line->ay, &own_a) || !pin(&f, 1, &line->bx, &line->by, &own_b))
     return false;
   set_frame(&f);
   for (size_t i = 0; i < sizeof splits / sizeof *splits; i++) {
-    float kept = follow_both(&f, splits[i], own_a, own_b);
+    float kept = follow_both(&f, splits[i], &own_a, &own_b);
     if (kept <= most) continue;
     most = kept, best = *line, found = true;
   }

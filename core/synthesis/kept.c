@@ -27,24 +27,25 @@ static bool everywhere(const void *level, int x, int y, float *value) {
 }
 
 static double line_kept(const rc_level *level, const rc_crossing *line, int exponent) {
-  float unit = (float)(1 << exponent), own[2][RC_PROFILE], mean[RC_PROFILE], sum = 0;
+  rc_profile own[2], here;
+  float unit = (float)(1 << exponent), sum = 0;
   float ax = (line->ax + .5f) / unit - .5f, ay = (line->ay + .5f) / unit - .5f;
   float dx = (line->bx - line->ax) / unit, dy = (line->by - line->ay) / unit;
   float length = sqrtf(dx * dx + dy * dy), piece_px = length / RC_LINE_PIECES;
   int near = (int)fmaxf(RC_PROFILE_NEAR_PX / unit, LEAST_NEAR_PX);
   int count = (int)fmaxf(piece_px, LEAST_PIECE_PX);
   rc_ruler ruler = {outside, level, dx / length, dy / length};
-  if (!rc_profile_mean(&ruler, ax, ay, -RC_PROFILE_FROM_PX, -1, near, own[0]) ||
-      !rc_profile_mean(&ruler, ax + dx, ay + dy, RC_PROFILE_FROM_PX, 1, near, own[1]))
+  if (!rc_profile_mean(&ruler, ax, ay, -RC_PROFILE_FROM_PX, -1, near, &own[0]) ||
+      !rc_profile_mean(&ruler, ax + dx, ay + dy, RC_PROFILE_FROM_PX, 1, near, &own[1]))
     return 1;
   ruler.value = everywhere;
   for (int piece = 0; piece < RC_LINE_PIECES; piece++) {
-    const float *wanted = own[2 * piece >= RC_LINE_PIECES];
+    const rc_profile *wanted = &own[2 * piece >= RC_LINE_PIECES];
     float t = (float)piece / RC_LINE_PIECES, square = rc_profile_dot(wanted, wanted);
     if (!rc_profile_mean(&ruler, ax + t * dx, ay + t * dy, .5f, piece_px / (float)count, count,
-                         mean))
+                         &here))
       continue;
-    sum += fmaxf(fminf(rc_profile_dot(mean, wanted) / fmaxf(square, 1e-6f), 1), 0);
+    sum += fmaxf(fminf(rc_profile_dot(&here, wanted) / fmaxf(square, 1e-6f), 1), 0);
   }
   return sum / RC_LINE_PIECES;
 }

@@ -12,29 +12,29 @@ static bool sample(const rc_ruler *ruler, float x, float y, float *value) {
 }
 
 bool rc_profile_mean(const rc_ruler *ruler, float x, float y, float from, float step, int count,
-                     float mean[RC_PROFILE]) {
-  float centre = 0;
+                     rc_profile *profile) {
+  profile->tone = 0;
   for (int o = 0; o < RC_PROFILE; o++) {
     int found = 0;
-    mean[o] = 0;
+    float sum = 0;
     for (int k = 0; k < count; k++) {
       float along = from + step * (float)k, across = (float)(o - RC_PROFILE_HALF), value;
       if (!sample(ruler, x + ruler->ux * along - ruler->uy * across,
                   y + ruler->uy * along + ruler->ux * across, &value))
         continue;
-      mean[o] += value;
+      sum += value;
       found++;
     }
     if (3 * found < count) return false;
-    mean[o] /= (float)found;
-    centre += mean[o] / RC_PROFILE;
+    profile->mean[o] = sum / (float)found;
+    profile->tone += profile->mean[o] / RC_PROFILE;
   }
-  for (int o = 0; o < RC_PROFILE; o++) mean[o] -= centre;
+  for (int o = 0; o < RC_PROFILE; o++) profile->mean[o] -= profile->tone;
   return true;
 }
 
-float rc_profile_dot(const float a[RC_PROFILE], const float b[RC_PROFILE]) {
+float rc_profile_dot(const rc_profile *a, const rc_profile *b) {
   float sum = 0;
-  for (int o = 0; o < RC_PROFILE; o++) sum += a[o] * b[o];
+  for (int o = 0; o < RC_PROFILE; o++) sum += a->mean[o] * b->mean[o];
   return sum;
 }

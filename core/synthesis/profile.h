@@ -15,10 +15,15 @@ typedef struct rc_ruler {
   float ux, uy; /* the line's direction, a unit vector */
 } rc_ruler;
 
-/* The mean of count profiles at (x, y) + u (from + k step), sampled bilinearly, its own mean taken
- * off. False: fewer than a third of them could be seen. */
+typedef struct rc_profile {
+  float mean[RC_PROFILE]; /* without their mean, */
+  float tone;             /* which is this */
+} rc_profile;
+
+/* The mean of count profiles at (x, y) + u (from + k step), sampled bilinearly. False: fewer than a
+ * third of them could be seen. */
 bool rc_profile_mean(const rc_ruler *ruler, float x, float y, float from, float step, int count,
-                     float mean[RC_PROFILE]);
-float rc_profile_dot(const float a[RC_PROFILE], const float b[RC_PROFILE]);
+                     rc_profile *profile);
+float rc_profile_dot(const rc_profile *a, const rc_profile *b);
 
 #endif
