@@ -100,9 +100,8 @@ static void search_border(void *user, int item, int thread) {
 
 static bool alike(const profile *a, const profile *b) {
   float aa = 0, bb = 0, ab = 0, most = MOST_UNLIKE * MOST_UNLIKE;
-  for (int o = 0; o < RC_PROFILE; o++) {
+  for (int o = 0; o < RC_PROFILE; o++)
     aa += a->mean[o] * a->mean[o], bb += b->mean[o] * b->mean[o], ab += a->mean[o] * b->mean[o];
-  }
   return ab > LEAST_LIKENESS * sqrtf(aa * bb) && aa < most * bb && bb < most * aa;
 }
 
@@ -181,8 +180,8 @@ static bool stands_out(const finder *f, int item) {
   for (int i = 0; i < f->border_count; i++) {
     int dx = f->border[i] % width - own % width, dy = f->border[i] / width - own / width;
     if (dx * dx + dy * dy > APART_PX * APART_PX || i == item) continue;
-    if (f->best[i].strength > strength || (f->best[i].strength == strength && i < item))
-      return false;
+    float other = f->best[i].strength;
+    if (other > strength || (other == strength && i < item)) return false;
   }
   return true;
 }
