@@ -180,7 +180,7 @@ def test_signals(folder):
     # Many times longer than the latest signal, however fast the machine.
     for number, stop in enumerate((signal.SIGINT, signal.SIGTERM) * 3):
         out = folder / f"{number}.png"
-        run = start("synthesize", image, "--size", "3000x2000", "--slant", "40",
+        run = start("synthesize", image, "--size", "1600x1200", "--slant", "40",
                     "--method", "paper", "--quality", "best", "-o", out, "-q")
         time.sleep((.3, .7, 1.2)[number // 2])
         run.send_signal(stop)
