@@ -12,9 +12,7 @@
 static bool value_at(const rc_level *level, int x, int y, int wanted, float *value) {
   if (!rc_inside(level->width, level->height, x, y)) return false;
   size_t at = (size_t)y * (size_t)level->width + (size_t)x;
-  uint32_t pixel = level->pixels[at];
-  *value = .3f * (float)(pixel & 255) + .59f * (float)(pixel >> 8 & 255) +
-           .11f * (float)(pixel >> 16 & 255);
+  *value = rc_pixel_brightness(level->pixels[at]);
   return (level->flags[at] & wanted) != 0;
 }
 
@@ -28,9 +26,9 @@ static bool everywhere(const void *level, int x, int y, float *value) {
 
 static double line_kept(const rc_level *level, const rc_crossing *line, int exponent) {
   rc_profile own[2], here;
+  rc_crossing c = rc_crossing_coarser(*line, exponent);
   float unit = (float)(1 << exponent), sum = 0;
-  float ax = (line->ax + .5f) / unit - .5f, ay = (line->ay + .5f) / unit - .5f;
-  float dx = (line->bx - line->ax) / unit, dy = (line->by - line->ay) / unit;
+  float ax = c.ax, ay = c.ay, dx = c.bx - c.ax, dy = c.by - c.ay;
   float length = sqrtf(dx * dx + dy * dy), piece_px = length / RC_LINE_PIECES;
   int near = (int)fmaxf(RC_PROFILE_NEAR_PX / unit, LEAST_NEAR_PX);
   int count = (int)fmaxf(piece_px, LEAST_PIECE_PX);

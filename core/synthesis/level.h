@@ -56,6 +56,10 @@ static inline size_t rc_level_at(const rc_level *level, int x, int y) {
 static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
   return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & RC_TARGET) != 0;
 }
+static inline float rc_pixel_brightness(uint32_t pixel) {
+  return .3f * (float)(pixel & 255) + .59f * (float)(pixel >> 8 & 255) +
+         .11f * (float)(pixel >> 16 & 255);
+}
 
 /* byte = value * gain + 128. gamma: a target pixel counts gamma times less for each px it is deeper
  * in the hole; 1 = the same. ranges NULL: this is the coarsest level, they are made here from what

@@ -148,9 +148,19 @@ static void refine(const finder *f, rc_crossing *c) {
   }
 }
 
-static float point_to_line(const rc_crossing *c, float x, float y) {
-  float dx = c->bx - c->ax, dy = c->by - c->ay;
-  return fabsf((x - c->ax) * dy - (y - c->ay) * dx) / sqrtf(dx * dx + dy * dy);
+float rc_crossing_distance(const rc_crossing *line, float x, float y) {
+  float dx = line->bx - line->ax, dy = line->by - line->ay;
+  return fabsf((x - line->ax) * dy - (y - line->ay) * dx) / sqrtf(dx * dx + dy * dy);
+}
+
+rc_crossing rc_crossing_coarser(rc_crossing line, int exponent) {
+  float unit = rc_exp2((float)exponent), *ends[] = {&line.ax, &line.ay, &line.bx, &line.by};
+  for (int k = 0; k < 4; k++) *ends[k] = (*ends[k] + .5f) / unit - .5f;
+  for (int k = 0; k < RC_LINE_PIECES; k++) {
+    line.from_x[k] = (line.from_x[k] + .5f) / unit - .5f;
+    line.from_y[k] = (line.from_y[k] + .5f) / unit - .5f;
+  }
+  return line;
 }
 
 /* Strongest first; of lines that run into one another the stronger stays. */
@@ -158,7 +168,8 @@ static void keep(rc_crossing lines[RC_MOST_LINES], int *count, rc_crossing c) {
   int at = 0;
   for (int i = 0; i < *count; i++) {
     rc_crossing *old = &lines[i];
-    if (point_to_line(old, c.ax, c.ay) > RC_PROFILE && point_to_line(old, c.bx, c.by) > RC_PROFILE)
+    if (rc_crossing_distance(old, c.ax, c.ay) > RC_PROFILE &&
+        rc_crossing_distance(old, c.bx, c.by) > RC_PROFILE)
       continue;
     if (old->strength >= c.strength) return;
     memmove(old, old + 1, (size_t)(*count - i - 1) * sizeof *old);
@@ -247,17 +258,9 @@ static void keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES
 static void follow(const finder *f, const rc_chart *chart, int exponent,
                    rc_crossing lines[RC_MOST_LINES], int *count) {
   int kept = 0;
-  float unit = (float)(1 << exponent);
   for (int i = 0; i < *count; i++) {
     rc_crossing c = lines[i];
-    if (!rc_follow(&f->picture, chart, &c)) continue;
-    float *all[] = {&c.ax, &c.ay, &c.bx, &c.by};
-    for (int k = 0; k < 4; k++) *all[k] = (*all[k] + .5f) * unit - .5f;
-    for (int k = 0; k < RC_LINE_PIECES; k++) {
-      c.from_x[k] = (c.from_x[k] + .5f) * unit - .5f;
-      c.from_y[k] = (c.from_y[k] + .5f) * unit - .5f;
-    }
-    lines[kept++] = c;
+    if (rc_follow(&f->picture, chart, &c)) lines[kept++] = rc_crossing_coarser(c, -exponent);
   }
   *count = kept;
 }

@@ -16,6 +16,10 @@ typedef struct rc_crossing {
   float from_x[RC_LINE_PIECES], from_y[RC_LINE_PIECES]; /* where each piece's middle comes from */
 } rc_crossing;
 
+/* Distance of (x, y) from the line, however far beyond its ends. */
+float rc_crossing_distance(const rc_crossing *line, float x, float y);
+/* The same line in px of a level 2^exponent times coarser; a negative exponent: finer. */
+rc_crossing rc_crossing_coarser(rc_crossing line, int exponent);
 /* Parallel lines of the plane that cross the hole and can be continued, strongest first. images and
  * masks: the pyramid's levels, finest first; chart: of the finest. */
 recede_status rc_lines_find(rc_context *context, const rc_image *images, const rc_mask *masks,

@@ -10,30 +10,22 @@
 #define LOCKED_PX 5.f
 #define LEAST_LOCKED_PX 1.f
 
-static float off_line(const rc_crossing *c, float x, float y) {
-  float dx = c->bx - c->ax, dy = c->by - c->ay;
-  return fabsf((x - c->ax) * dy - (y - c->ay) * dx) / sqrtf(dx * dx + dy * dy);
-}
-
 static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
   const rc_chart *chart = &level->chart;
   float unit = (float)(1 << exponent), reach = fmaxf(LOCKED_PX / unit, LEAST_LOCKED_PX);
-  rc_crossing c = *line;
+  rc_crossing c = rc_crossing_coarser(*line, exponent);
   rc_copy copies[RC_LINE_PIECES];
-  float *all[] = {&c.ax, &c.ay, &c.bx, &c.by};
-  for (int k = 0; k < 4; k++) *all[k] = (*all[k] + .5f) / unit - .5f;
   float dx = c.bx - c.ax, dy = c.by - c.ay, square = dx * dx + dy * dy;
   for (int k = 0; k < RC_LINE_PIECES; k++) {
     float t = ((float)k + .5f) / RC_LINE_PIECES;
     copies[k] = rc_copy_between(chart, c.ax + t * dx - chart->x0, c.ay + t * dy - chart->y0,
-                                (c.from_x[k] + .5f) / unit - .5f - chart->x0,
-                                (c.from_y[k] + .5f) / unit - .5f - chart->y0);
+                                c.from_x[k] - chart->x0, c.from_y[k] - chart->y0);
   }
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
       float t = (((float)x - c.ax) * dx + ((float)y - c.ay) * dy) / square;
       if (!rc_level_is_target(level, x, y) || t < -.1f || t > 1.1f ||
-          off_line(&c, (float)x, (float)y) > reach)
+          rc_crossing_distance(&c, (float)x, (float)y) > reach)
         continue;
       int piece = (int)(fminf(fmaxf(t, 0), .999f) * RC_LINE_PIECES);
       rc_place place =

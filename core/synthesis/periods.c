@@ -91,7 +91,7 @@ static int stronger_first(const void *a, const void *b) {
 }
 
 static bool stands_out(const correlation *c, const peak *p) {
-  int dx = (int)lrintf(p->x / 2), dy = (int)lrintf(p->y / 2);
+  int dx = (int)rc_round(p->x / 2), dy = (int)rc_round(p->y / 2);
   return p->value >= LEAST_LATTICE && p->value - value_at(c, dx, dy) >= LEAST_ABOVE_HALF_WAY;
 }
 
@@ -147,10 +147,7 @@ recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64
   RC_TRY(RC_NEW(context, pixels, &brightness));
   RC_TRY(RC_NEW(context, POINTS, &points));
   RC_TRY(RC_NEW(context, (c.lag + 1) * (2 * c.lag + 1), &c.value));
-  for (size_t i = 0; i < pixels; i++)
-    brightness[i] = .3f * (float)(level->pixels[i] & 255) +
-                    .59f * (float)(level->pixels[i] >> 8 & 255) +
-                    .11f * (float)(level->pixels[i] >> 16 & 255);
+  for (size_t i = 0; i < pixels; i++) brightness[i] = rc_pixel_brightness(level->pixels[i]);
   for (int i = 0; i < POINTS; i++)
     points[i] =
         level->order[rc_below((uint32_t)rc_random(key, (uint32_t)i, 0, 0), (uint32_t)sources)];
