@@ -263,7 +263,7 @@ typedef struct recede_report {
   uint64_t refused_pixels;   /* target pixels on or beyond the horizon: left as they were */
   uint64_t magnified_pixels; /* filled from a source of less than .8 of the resolution needed */
   double largest_magnification;
-  uint64_t nonfinite_pixels; /* NaN or infinite input pixels, never a source */
+  uint64_t nonfinite_pixels; /* NaN, infinite or beyond +-1e9: never a source */
   double energy;             /* methods paper and kwatra: the last energy, eq. 8 */
   int iterations;
   char warning[512]; /* "" or sentences to show the user, English */

@@ -6,9 +6,12 @@
 #include "base/memory.h"
 #include "image/view.h"
 
-static bool finite_colour(const float *pixel, int colours) {
+/* Beyond this a value is damage, not light, and sums of its squares would overflow. */
+#define MOST_VALUE 1e9f
+
+static bool usable_colour(const float *pixel, int colours) {
   for (int k = 0; k < colours; k++)
-    if (!isfinite(pixel[k])) return false;
+    if (!(fabsf(pixel[k]) <= MOST_VALUE)) return false;
   return true;
 }
 
@@ -26,7 +29,7 @@ int rc_classify_row(const rc_views *views, int x, int y, int count, const float 
     const float *pixel = values + (size_t)i * (size_t)channels;
     if (flags[i] & RC_TARGET) continue;
     if (colours < channels && !(pixel[colours] > 0)) continue; /* transparent: never read */
-    if (!finite_colour(pixel, colours))
+    if (!usable_colour(pixel, colours))
       nonfinite++;
     else
       flags[i] = !views->source || scratch[i] > .5f ? RC_KNOWN | RC_SOURCE : RC_KNOWN;

@@ -9,8 +9,8 @@ typedef struct rc_views {
 } rc_views;
 
 /* What the count pixels of row y from x on are (image.h), from their values (channels of the image,
- * interleaved) and the mask and source rows; scratch holds count floats. Returns how many values
- * that matter were not finite. */
+ * interleaved) and the mask and source rows; scratch holds count floats. Returns how many pixels
+ * that matter were not finite or beyond +-1e9. */
 int rc_classify_row(const rc_views *views, int x, int y, int count, const float *values,
                     float *scratch, uint8_t *flags);
 

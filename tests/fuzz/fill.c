@@ -2,8 +2,9 @@
  * must leave the pixels outside the mask alone and write finite values only; one that fails must
  * leave all and say why. */
 #include <math.h>
-#include <stdbool.h>
+#include <stdarg.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,13 +57,24 @@ static void read_into(input *in, const recede_view *view) {
   for (size_t i = 0; i < view->stride_bytes * (size_t)view->height; i++) bytes[i] = next(in);
 }
 
+/* Says what was found, for of a run elsewhere only that line is kept. */
+static void broken(const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  fputs("SUMMARY: ", stderr);
+  vfprintf(stderr, format, args);
+  fputs("\n", stderr);
+  va_end(args);
+  abort();
+}
+
 /* Pixels beyond the horizon stay as they were. */
-static bool finite_or_same(const recede_view *image, const uint8_t *before) {
+static void check_finite(const recede_view *image, const uint8_t *before) {
   const float *old = (const void *)before, *made = image->data;
-  if (image->type != RECEDE_FLOAT) return true;
+  if (image->type != RECEDE_FLOAT) return;
   for (size_t i = 0; i < image->stride_bytes / sizeof *made * (size_t)image->height; i++)
-    if (!isfinite(made[i]) && memcmp(&made[i], &old[i], sizeof *made) != 0) return false;
-  return true;
+    if (!isfinite(made[i]) && memcmp(&made[i], &old[i], sizeof *made) != 0)
+      broken("value %zu was %g and is %g", i, (double)old[i], (double)made[i]);
 }
 
 static void check(const recede_view *image, const recede_view *mask, const uint8_t *before,
@@ -73,8 +85,8 @@ static void check(const recede_view *image, const recede_view *mask, const uint8
   for (size_t i = 0; i < pixels; i++)
     if ((status != RECEDE_OK || !marked[i]) &&
         memcmp(before + i * pixel, after + i * pixel, pixel) != 0)
-      abort();
-  if (!finite_or_same(image, before)) abort();
+      broken("pixel %zu changed, mask %d, status %d", i, marked[i], (int)status);
+  check_finite(image, before);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
@@ -100,7 +112,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   recede_job_set_mask(job, &mask);
   recede_status status = recede_job_set_params(job, &params);
   if (status == RECEDE_OK) status = recede_job_fill(job, &image);
-  if (status != RECEDE_OK && !recede_job_message(job)[0]) abort();
+  if (status != RECEDE_OK && !recede_job_message(job)[0])
+    broken("status %d without a message", (int)status);
   check(&image, &mask, before, status);
   recede_job_free(&job);
   free(before);

@@ -65,8 +65,8 @@ static void transparent_is_never_read(void) {
   picture_clear(&first);
 }
 
-static picture fill_beside_nonfinite(float value, float mask) {
-  task t = small_task(3, RECEDE_FLOAT, "");
+static picture fill_beside_unusable(float value, float mask, const char *settings) {
+  task t = small_task(3, RECEDE_FLOAT, settings);
   static const int spots[][2] = {{5, 5}, {39, 50}, {100, 60}, {60, 90}, {75, 35}, {110, 20}};
   for (int i = 0; i < (int)G_N_ELEMENTS(spots); i++)
     picture_set(&t.image, spots[i][0], spots[i][1], i % 3, value);
@@ -80,13 +80,19 @@ static picture fill_beside_nonfinite(float value, float mask) {
   return part;
 }
 
-static void nonfinite_is_counted_and_never_a_source(void) {
-  picture first = fill_beside_nonfinite(NAN, 1);
-  picture other = fill_beside_nonfinite(-INFINITY, 1);
-  picture blended = fill_beside_nonfinite(INFINITY, .5f);
-  assert_same(&first, &other);
-  picture_clear(&first);
-  picture_clear(&other);
+static void unusable_is_counted_and_never_a_source(void) {
+  static const char *const settings[] = {"", "method=paper", "method=kwatra"};
+  static const float values[] = {-INFINITY, 3e38f, -2e9f};
+  for (guint m = 0; m < G_N_ELEMENTS(settings); m++) {
+    picture first = fill_beside_unusable(NAN, 1, settings[m]);
+    for (guint i = 0; i < G_N_ELEMENTS(values); i++) {
+      picture other = fill_beside_unusable(values[i], 1, settings[m]);
+      assert_same(&first, &other);
+      picture_clear(&other);
+    }
+    picture_clear(&first);
+  }
+  picture blended = fill_beside_unusable(INFINITY, .5f, "");
   picture_clear(&blended);
 }
 
@@ -365,7 +371,7 @@ static void too_large_is_refused(void) {
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/plane/transparent", transparent_is_never_read);
-  g_test_add_func("/plane/nonfinite", nonfinite_is_counted_and_never_a_source);
+  g_test_add_func("/plane/unusable-values", unusable_is_counted_and_never_a_source);
   g_test_add_func("/plane/wide", wide_values_survive);
   g_test_add_func("/plane/deep", deep_types);
   g_test_add_func("/plane/blend", gray_mask_blends);
