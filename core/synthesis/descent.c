@@ -12,6 +12,7 @@
 #include "synthesis/trial.h"
 #include "synthesis/usage.h"
 #include "synthesis/vote.h"
+#include "synthesis/whole.h"
 
 /* Each px deeper in the hole counts 1.3 times less; 1.15 is too trusting. */
 #define CONFIDENCE_FALLOFF 1.3f
@@ -120,25 +121,34 @@ static recede_status iterate(rc_context *context, const rc_descent *e, int expon
   return RECEDE_OK;
 }
 
-static recede_status start_once(rc_context *context, const rc_descent *e, int trial,
-                                rc_level *level) {
+/* Some of all trials: starts by patches first, then those of few whole copies. */
+typedef struct starts {
+  int first, first_whole, end, trials;
+  bool lattice;
+} starts;
+
+static recede_status start_once(rc_context *context, const rc_descent *e, const starts *s,
+                                int trial, rc_level *level) {
+  static const int copies[] = {16, 8, 4};
   rc_search search = {.kernels = e->kernels,
                       .key = rc_key((uint64_t)e->params->seed, 99, (uint32_t)trial),
                       .periods = e->periods,
                       .period_count = e->period_count,
                       .anywhere = effort_of(e)->start_tries};
-  return rc_start(context, level, &search);
+  if (trial < s->first_whole) return rc_start(context, level, &search);
+  return rc_start_whole(context, level, &search, s->lattice, copies[(trial - s->first_whole) % 3]);
 }
 
-/* Starts first .. end - 1 of trials: the one that fits best, and its misfit. */
-static recede_status try_starts(rc_context *context, const rc_descent *e, int first, int end,
-                                int trials, rc_level *level, workspace *scratch, rc_trial *best,
+/* Keeps the start that fits best, and its misfit. */
+static recede_status try_starts(rc_context *context, const rc_descent *e, const starts *s,
+                                rc_level *level, workspace *scratch, rc_trial *best,
                                 double *least) {
   *least = INFINITY;
-  for (int trial = first; trial < end; trial++) {
-    RC_TRY(start_once(context, e, trial, level));
-    RC_TRY(iterate(context, e, e->level_count - 1, trial, trials, level, scratch));
-    double misfit = rc_misfit(level);
+  for (int trial = s->first; trial < s->end; trial++) {
+    RC_TRY(start_once(context, e, s, trial, level));
+    RC_TRY(iterate(context, e, e->level_count - 1, trial, s->trials, level, scratch));
+    if (scratch->usage) RC_TRY(rc_usage_prices(context, level, scratch->usage));
+    double misfit = rc_misfit(level, scratch->usage);
     if (misfit >= *least) continue;
     *least = misfit;
     rc_trial_save(level, best);
@@ -168,18 +178,21 @@ static recede_status run_coarsest(rc_context *context, rc_descent *e, rc_level *
     RC_TRY(rc_lines_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
                          &e->line_count));
   int trials = plain + (e->line_count == 0 ? 0 : lattice ? 1 : (plain + 1) / 2);
+  /* Where lines cross the hole there are things that go on as a whole: boards, courses of tiles. */
+  bool whole = e->params->engine_whole && e->line_count > 0;
+  starts by_chance = {0, whole ? plain - plain / 2 : plain, plain, trials, lattice};
+  starts along_lines = {plain, whole ? plain : trials, trials, trials, lattice};
   if (trials == 1) {
-    RC_TRY(start_once(context, e, 0, level));
+    RC_TRY(start_once(context, e, &by_chance, 0, level));
     return iterate(context, e, exponent, 0, 1, level, scratch);
   }
   RC_TRY(rc_trial_new(context, level, &best));
-  RC_TRY(try_starts(context, e, 0, plain, trials, level, scratch, &best, &misfit));
+  RC_TRY(try_starts(context, e, &by_chance, level, scratch, &best, &misfit));
   if (e->line_count) {
     misfit += price_of_broken_lines(e, level, &best);
     RC_TRY(rc_trial_new(context, level, &with_lines));
     RC_TRY(rc_lines_lock(context, e->lines, e->line_count, exponent, level));
-    RC_TRY(try_starts(context, e, plain, trials, trials, level, scratch, &with_lines,
-                      &misfit_with_lines));
+    RC_TRY(try_starts(context, e, &along_lines, level, scratch, &with_lines, &misfit_with_lines));
     misfit_with_lines += price_of_broken_lines(e, level, &with_lines);
     bool clear = !lattice && e->lines[0].strength >= CLEAR_LINE;
     double favour = clear ? FAVOUR_OF_CLEAR_LINES : 1;

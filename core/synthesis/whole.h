@@ -1,0 +1,15 @@
+/* A start of few whole copies: those that together go on best from what lies around the hole. A
+ * start by patches sees a few pixels at a time; this one sees which shift of the plane carries a
+ * whole side of the hole on, as a chimney's edge or a row of tiles. */
+#ifndef RECEDE_SYNTHESIS_WHOLE_H
+#define RECEDE_SYNTHESIS_WHOLE_H
+
+#include "synthesis/search.h"
+
+/* Gives every target pixel that is not locked one of at most `copies` copies, and the guide its
+ * colour; a = NAN where none of them has one. Costs are not known yet. The copies come from chance
+ * sources, or in a lattice by search->periods alone: a chance one fits, but half a px off. */
+recede_status rc_start_whole(rc_context *context, rc_level *level, const rc_search *search,
+                             bool lattice, int copies);
+
+#endif
