@@ -104,6 +104,10 @@ mkdir -p "$logs"
 groups=(build)
 [ $fast = 1 ] || groups+=(plugin test)
 step packages install_packages "${groups[@]}"
+if [ $fast = 0 ] && [ -z "$sanitize" ] && [ ${#names[@]} = 0 ]; then
+  # Minutes of fetching and unpacking beside the first tests; gimp3() waits for it, and reports.
+  nice tests/gimp/chroot.sh make >/dev/null 2>&1 </dev/null &
+fi
 if [ -n "$sanitize" ]; then
   sanitized "$sanitize"
 else

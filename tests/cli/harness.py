@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import traceback
 from pathlib import Path
 
@@ -174,6 +175,7 @@ def main(names):
     failed = 0
     for number, function in enumerate(tests, 1):
         name = function.__name__[5:].replace("_", " ")
+        began = time.monotonic()
         try:
             run_one(function)
             print(f"ok {number} - {name}", flush=True)
@@ -184,4 +186,5 @@ def main(names):
             print(f"not ok {number} - {name}", flush=True)
             text = str(error) if isinstance(error, Failure) else traceback.format_exc()
             print("\n".join("# " + line for line in text.splitlines()), flush=True)
+        print(f"# {time.monotonic() - began:.1f} s", flush=True)
     sys.exit(failed > 0)

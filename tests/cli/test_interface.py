@@ -49,7 +49,7 @@ def test_usage_errors_are_2(folder):
         ["--slant", "30", "--frontal"], ["--horizon", "0,5,60,5", "--slant", "30"],
         ["--quad", "10,10,50,10,60,40,0,40", "--frontal"],
     ]
-    for more in wrong:
+    for more in wrong[::3 if harness.SANITIZED else 1]:
         done = recede("fill", *good, *more, code=2)
         check(done.stderr.startswith(b"recede: "), more, done.stderr)
     recede("fill", image, "-o", folder / "out.png", code=2)
@@ -193,7 +193,7 @@ def test_two_runs_write_the_same_bytes(folder):
 def test_names_of_files(folder):
     names = ["-x.png", "--slant", "with space.png", "new\nline.png", "ünï©ode 日本.png",
              "a;b|c&d.png", "$(touch hit).png", "*.png", "n" * 251 + ".png", "%s%n.png", "-"]
-    for number, name in enumerate(names):
+    for number, name in enumerate(names[::3 if harness.SANITIZED else 1]):
         image = write(folder / "plain.png", texture())
         mask = write(folder / "mask.png", hole())
         inside = folder / "sub"

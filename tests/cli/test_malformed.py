@@ -144,7 +144,7 @@ def test_damaged_metadata(folder):
                         f"-ThumbnailImage<={write(folder / 'small.jpg', texture(12, 16))}",
                         str(image)], check=True)
         data = image.read_bytes()
-        for number in range(16):
+        for number in range(0, 16, 5 if harness.SANITIZED else 1):
             damaged = bytearray(data)
             # JPEG and PNG have them first (PNG after IHDR), TIFF last.
             last = len(data) if suffix == "tif" else 700
