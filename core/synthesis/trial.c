@@ -13,38 +13,40 @@
 #define PRICE_OF_CONTRAST .2
 #define MOST_SAMPLES 4096
 
-recede_status rc_trial_new(rc_context *context, const rc_level *level, rc_trial *trial) {
-  size_t box = (size_t)level->box_w * (size_t)level->box_h;
-  RC_TRY(RC_NEW(context, box, &trial->field));
-  RC_TRY(RC_NEW(context, box, &trial->cost));
-  return RC_NEW(context, box, &trial->guide);
-}
-
-static uint32_t *row_of(const rc_level *level, int row) {
-  return level->pixels + (size_t)(level->box.y0 + row) * (size_t)level->width + level->box.x0;
-}
-
-void rc_trial_save(const rc_level *level, rc_trial *trial) {
-  size_t width = (size_t)level->box_w, box = width * (size_t)level->box_h;
-  memcpy(trial->field, level->field, box * sizeof *trial->field);
-  memcpy(trial->cost, level->cost, box * sizeof *trial->cost);
-  for (int row = 0; row < level->box_h; row++)
-    memcpy(trial->guide + (size_t)row * width, row_of(level, row), width * sizeof *trial->guide);
-}
-
-void rc_trial_restore(rc_level *level, const rc_trial *trial) {
-  size_t width = (size_t)level->box_w, box = width * (size_t)level->box_h;
-  memcpy(level->field, trial->field, box * sizeof *trial->field);
-  memcpy(level->cost, trial->cost, box * sizeof *trial->cost);
-  for (int row = 0; row < level->box_h; row++)
-    memcpy(row_of(level, row), trial->guide + (size_t)row * width, width * sizeof *trial->guide);
-}
-
 static int target_pixels(const rc_level *level) {
   int count = 0;
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) count += rc_level_is_target(level, x, y);
   return count;
+}
+
+recede_status rc_trial_new(rc_context *context, const rc_level *level, rc_trial *trial) {
+  int count = target_pixels(level);
+  RC_TRY(RC_NEW(context, count, &trial->field));
+  RC_TRY(RC_NEW(context, count, &trial->cost));
+  return RC_NEW(context, count, &trial->guide);
+}
+
+void rc_trial_save(const rc_level *level, rc_trial *trial) {
+  size_t n = 0;
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      if (!rc_level_is_target(level, x, y)) continue;
+      trial->field[n] = level->field[rc_level_at(level, x, y)];
+      trial->cost[n] = level->cost[rc_level_at(level, x, y)];
+      trial->guide[n++] = level->pixels[(size_t)y * (size_t)level->width + (size_t)x];
+    }
+}
+
+void rc_trial_restore(rc_level *level, const rc_trial *trial) {
+  size_t n = 0;
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      if (!rc_level_is_target(level, x, y)) continue;
+      level->field[rc_level_at(level, x, y)] = trial->field[n];
+      level->cost[rc_level_at(level, x, y)] = trial->cost[n];
+      level->pixels[(size_t)y * (size_t)level->width + (size_t)x] = trial->guide[n++];
+    }
 }
 
 int rc_trials_worth(const rc_level *level, int most) {

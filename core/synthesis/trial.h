@@ -5,11 +5,11 @@
 
 #include "synthesis/level.h"
 
-/* What a start leaves in a level. */
+/* What a start leaves in a level, target pixel by target pixel. */
 typedef struct rc_trial {
   rc_copy *field;
   float *cost;
-  uint32_t *guide; /* the box's pixels */
+  uint32_t *guide;
 } rc_trial;
 
 recede_status rc_trial_new(rc_context *context, const rc_level *level, rc_trial *trial);
