@@ -38,9 +38,10 @@ static recede_status start_once(rc_context *context, const rc_descent *e, const 
   return rc_start_whole(context, level, &search, s->lattice, copies[(trial - s->first_whole) % 3]);
 }
 
-/* All trials get a third of their iterations, the better half of them the rest. */
+/* All trials get a third of their iterations, the better half of them the rest. Of two both get
+ * all: a third of a draft's few says too little. */
 static int first_part(int iterations) { return (iterations + 2) / 3; }
-static int better_half(int trials) { return (trials + 1) / 2; }
+static int better_half(int trials) { return trials <= 2 ? trials : (trials + 1) / 2; }
 static int work_of(int trials, int iterations) {
   int part = first_part(iterations);
   return trials * part + better_half(trials) * (iterations - part);
