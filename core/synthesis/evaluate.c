@@ -107,6 +107,13 @@ static bool set_footprint(const rc_level *level, const rc_chart *chart, rc_copy 
   return true;
 }
 
+bool rc_query_allows(const rc_level *level, const rc_query *query, rc_copy copy,
+                     const rc_place *place) {
+  rc_footprint footprint;
+  return rc_place_price(level->variance, place, query->low, query->high) < RC_NO_COST &&
+         set_footprint(level, &level->chart, copy, place, &footprint);
+}
+
 float rc_query_cost(const rc_level *level, const rc_kernels *kernels, rc_query *query, rc_copy copy,
                     const rc_place *place, float limit) {
   rc_footprint footprint;

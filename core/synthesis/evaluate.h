@@ -32,6 +32,9 @@ void rc_query_set(const rc_level *level, int x, int y, rc_query *query);
  * wrong scale, or its footprint is not wholly source). */
 float rc_query_cost(const rc_level *level, const rc_kernels *kernels, rc_query *query, rc_copy copy,
                     const rc_place *place, float limit);
+/* Whether the copy has a cost at all; reads no pixels. */
+bool rc_query_allows(const rc_level *level, const rc_query *query, rc_copy copy,
+                     const rc_place *place);
 /* Where a copy takes the query's pixel from. */
 static inline rc_place rc_query_place(const rc_level *level, const rc_query *query, rc_copy copy) {
   return rc_copy_place(&level->chart, copy, query->x, query->y);

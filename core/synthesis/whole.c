@@ -71,10 +71,6 @@ static float colour_distance(uint32_t p, uint32_t q) {
   return sum / 3.f;
 }
 
-static rc_place place_of(const rc_level *level, rc_copy copy, int x, int y) {
-  return rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
-}
-
 static void measure(void *user, int item, int thread) {
   const whole *w = user;
   const rc_level *level = w->level;
@@ -83,7 +79,8 @@ static void measure(void *user, int item, int thread) {
   for (int i = 0; i < w->ring_count; i++) {
     uint32_t colour;
     int x = w->ring[i] % level->width, y = w->ring[i] / level->width;
-    rc_place place = place_of(level, c->copy, x, y);
+    rc_place place =
+        rc_copy_place(&level->chart, c->copy, rc_level_x(level, x), rc_level_y(level, y));
     c->misfit[i] = NO_FIT * level->variance;
     if (!rc_place_pixel(level, &place, &colour)) continue;
     float misfit = colour_distance(colour, level->pixels[w->ring[i]]);
@@ -124,6 +121,7 @@ static void label(const whole *w, int x, int y) {
   rc_level *level = w->level;
   size_t at = rc_level_at(level, x, y);
   float misfit[MOST_COPIES] = {0}, least = INFINITY;
+  rc_query query;
   for (int i = 0; i < w->ring_count; i++) {
     float dx = (float)(w->ring[i] % level->width - x), dy = (float)(w->ring[i] / level->width - y);
     float weight = 1.f / (dx * dx + dy * dy);
@@ -131,10 +129,14 @@ static void label(const whole *w, int x, int y) {
   }
   level->field[at] = (rc_copy){NAN, NAN, NAN};
   level->cost[at] = RC_NO_COST;
+  rc_query_init(&query);
+  rc_query_set(level, x, y, &query);
   for (int n = 0; n < w->chosen_count; n++) {
     uint32_t colour;
-    rc_place place = place_of(level, w->chosen[n]->copy, x, y);
-    if (misfit[n] >= least || !rc_place_pixel(level, &place, &colour)) continue;
+    rc_place place = rc_query_place(level, &query, w->chosen[n]->copy);
+    if (misfit[n] >= least || !rc_query_allows(level, &query, w->chosen[n]->copy, &place) ||
+        !rc_place_pixel(level, &place, &colour))
+      continue;
     least = misfit[n];
     level->field[at] = w->chosen[n]->copy;
     level->pixels[(size_t)y * (size_t)level->width + (size_t)x] = colour;
