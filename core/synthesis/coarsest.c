@@ -110,8 +110,8 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
     RC_TRY(rc_lines_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
                          &e->line_count));
   int trials = plain + (e->line_count == 0 ? 0 : lattice ? 1 : (plain + 1) / 2);
-  /* Where lines cross the hole there are things that go on as a whole: boards, courses of tiles. But
-   * whole copies that break lines fit well, and must not win over those that continue them; a
+  /* Where lines cross the hole there are things that go on as a whole: boards, courses of tiles.
+   * But whole copies that break lines fit well, and must not win over those that continue them; a
    * lattice's periods break none. */
   bool whole = e->params->engine_whole && e->line_count > 0;
   starts by_chance = {0, whole && lattice ? plain - plain / 2 : plain, plain, lattice};
