@@ -9,7 +9,6 @@
 #include "synthesis/search.h"
 #include "synthesis/start.h"
 #include "synthesis/trial.h"
-#include "synthesis/usage.h"
 #include "synthesis/whole.h"
 
 /* Broken lines are seen first: they cost on top of a start's misfit. Starts that continue clear
@@ -47,13 +46,6 @@ static int work_of(int trials, int iterations) {
   return trials * part + better_half(trials) * (iterations - part);
 }
 
-static recede_status misfit_of(rc_context *context, rc_level *level, rc_workspace *scratch,
-                               double *misfit) {
-  if (scratch->usage) RC_TRY(rc_usage_prices(context, level, scratch->usage));
-  *misfit = rc_misfit(level, scratch->usage);
-  return RECEDE_OK;
-}
-
 /* Keeps the start that fits best, and its misfit. */
 static recede_status try_starts(rc_context *context, const rc_descent *e, const starts *s,
                                 rc_pace *p, rc_level *level, rc_workspace *scratch, rc_trial *best,
@@ -68,19 +60,18 @@ static recede_status try_starts(rc_context *context, const rc_descent *e, const 
     RC_TRY(rc_trial_new(context, level, &trials[n]));
     RC_TRY(start_once(context, e, s, s->first + n, level));
     RC_TRY(rc_iterate(context, e, exponent, s->first + n, 0, part, p, level, scratch));
-    RC_TRY(misfit_of(context, level, scratch, &misfits[n]));
+    misfits[n] = rc_misfit(level);
     rc_trial_save(level, &trials[n]);
   }
   *least = INFINITY;
   for (int k = 0; k < better_half(count); k++) {
     int n = 0;
-    double misfit;
     for (int i = 1; i < count; i++)
       if (misfits[i] < misfits[n]) n = i;
     misfits[n] = INFINITY;
     rc_trial_restore(level, &trials[n]);
     RC_TRY(rc_iterate(context, e, exponent, s->first + n, part, iterations, p, level, scratch));
-    RC_TRY(misfit_of(context, level, scratch, &misfit));
+    double misfit = rc_misfit(level);
     if (misfit >= *least) continue;
     *least = misfit;
     rc_trial_save(level, best);

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "synthesis/evaluate.h"
 
 /* All starts together work on at most so many pixels: a level is coarse by its hole's width, and a
  * thin hole may be long. */
@@ -115,23 +114,6 @@ static double contrast(const rc_level *level) {
          rc_log2((float)(outside.sum / outside.count + 1e-3));
 }
 
-/* Of the sources that the copies use. */
-static double mean_usage(const rc_level *level, const float *usage) {
-  double sum = 0, count = 0;
-  for (int y = level->box.y0; y < level->box.y1; y++)
-    for (int x = level->box.x0; x < level->box.x1; x++) {
-      rc_copy copy = level->field[rc_level_at(level, x, y)];
-      size_t source;
-      if (!rc_level_is_target(level, x, y) || isnan(copy.a)) continue;
-      rc_place place =
-          rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
-      if (rc_place_at(level, &place, &source)) sum += usage[source];
-      count++;
-    }
-  return count > 0 ? sum / count : 0;
-}
-
-double rc_misfit(const rc_level *level, const float *usage) {
-  double cost = mean_cost(level) + (usage ? mean_usage(level, usage) : 0);
-  return cost / level->variance + PRICE_OF_CONTRAST * fabs(contrast(level));
+double rc_misfit(const rc_level *level) {
+  return mean_cost(level) / level->variance + PRICE_OF_CONTRAST * fabs(contrast(level));
 }

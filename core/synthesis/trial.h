@@ -17,8 +17,7 @@ void rc_trial_save(const rc_level *level, rc_trial *trial);
 void rc_trial_restore(rc_level *level, const rc_trial *trial);
 /* How many starts of so many are worth their time in this level. */
 int rc_trials_worth(const rc_level *level, int most);
-/* What is wrong with the level's guide, in variances; less is better. usage: prices of sources as
- * they are used now, or NULL. */
-double rc_misfit(const rc_level *level, const float *usage);
+/* What is wrong with the level's guide, in variances; less is better. */
+double rc_misfit(const rc_level *level);
 
 #endif
