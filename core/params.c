@@ -98,7 +98,7 @@ static const recede_param_info table[] = {
           "search and copy without the brightness that drifts across the picture"),
     STAGE("engine-periods", engine_periods, "candidates at the texture's periods"),
     STAGE("engine-lines", engine_lines, "continue straight lines that cross the hole"),
-    STAGE("engine-whole", engine_whole, "half of the starts from few whole copies"),
+    STAGE("engine-whole", engine_whole, "few whole copies start lattices and what lines cross"),
     STAGE("engine-coherence", engine_coherence, "a price on neighbours with other displacements"),
     STAGE("engine-usage", engine_usage, "a price on taking the same source often"),
     STAGE("engine-confidence", engine_confidence, "pixels count less the deeper in the hole"),
