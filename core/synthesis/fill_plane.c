@@ -1,5 +1,6 @@
 /* Method plane: the only file that knows the order of the stages.
- * tone -> pyramid -> start -> (search <-> vote) per level, coarse to fine -> composition -> detail.
+ * tone -> pyramid -> sources that look alike -> start -> (search <-> vote) per level, coarse to
+ * fine -> composition -> detail.
  */
 #include <math.h>
 
@@ -7,6 +8,7 @@
 #include "image/distance.h"
 #include "image/pyramid.h"
 #include "image/tone.h"
+#include "synthesis/alike.h"
 #include "synthesis/compose.h"
 #include "synthesis/descent.h"
 #include "synthesis/detail.h"
@@ -165,8 +167,10 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   rc_tone_fit(filled, &problem->flags, params->engine_tone, &tone);
   RC_TRY(rc_tone_apply(context, &tone, &problem->flags, RC_KNOWN, -1, filled));
   RC_TRY(rc_stage(context, "pyramid", .07, .1));
-  e.gain = byte_gain(filled, &problem->flags);
   RC_TRY(build_pyramid(context, problem, filled, &e));
+  if (params->engine_alike && !problem->chosen)
+    RC_TRY(rc_keep_alike(context, e.images, e.flags, e.level_count));
+  e.gain = byte_gain(filled, &problem->flags);
   RC_TRY(choose_surface(context, problem, &e, &raised));
   e.chart = chart_of(problem, raised);
   context->report.surface = raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;

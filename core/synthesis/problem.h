@@ -21,6 +21,7 @@ typedef struct rc_problem {
   recede_plane plane;         /* of the whole picture */
   int origin_x, origin_y;     /* of image in the whole picture */
   int exemplar_x, exemplar_y; /* synthesis: exemplar's pixel at image's (0, 0) */
+  bool chosen;                /* synthesis: all of the exemplar is wanted */
 } rc_problem;
 
 /* Each fills the TARGET pixels of *filled, which starts as problem->image (for method plane it IS
