@@ -93,8 +93,7 @@ static bool look(const comparison *c, int x, int y, looks *out) {
 
 static float distance_of(const looks *p, const looks *q) {
   float sum = 0;
-  for (int k = 0; k < LOOKS; k++)
-    sum += (p->value[k] - q->value[k]) * (p->value[k] - q->value[k]);
+  for (int k = 0; k < LOOKS; k++) sum += (p->value[k] - q->value[k]) * (p->value[k] - q->value[k]);
   return sum;
 }
 

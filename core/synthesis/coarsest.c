@@ -11,13 +11,11 @@
 #include "synthesis/trial.h"
 #include "synthesis/whole.h"
 
-/* Broken lines are seen first: they cost on top of a start's misfit. Starts that continue clear
- * ones may fit worse, for finer levels break what the coarsest still has; boards measure 40 and
- * more. Others must fit better: crests of waves, 13 to 20, look like lines by chance, and bricks
- * and tiles carry their own. A lattice's lines get one try. */
+/* Broken lines are seen first: they cost on top of a start's misfit. Starts that continue them may
+ * fit worse, for finer levels break what the coarsest still has, and thin lines are faint there. A
+ * lattice has its own lines: they get one try. */
 #define PRICE_OF_BROKEN_LINES .3
-#define CLEAR_LINE 30.f
-#define FAVOUR_OF_CLEAR_LINES 1.3
+#define FAVOUR_OF_LINES 1.2
 
 /* Some of all trials: starts by patches first, then those of few whole copies. */
 typedef struct starts {
@@ -123,9 +121,7 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
     RC_TRY(
         try_starts(context, e, &along_lines, &p, level, scratch, &with_lines, &misfit_with_lines));
     misfit_with_lines += price_of_broken_lines(e, level, &with_lines);
-    bool clear = !lattice && e->lines[0].strength >= CLEAR_LINE;
-    double favour = clear ? FAVOUR_OF_CLEAR_LINES : 1;
-    e->continue_lines = misfit_with_lines < favour * misfit;
+    e->continue_lines = misfit_with_lines < FAVOUR_OF_LINES * misfit;
     if (e->continue_lines) return RECEDE_OK;
     RC_FREE(context, &level->locked);
   }

@@ -20,7 +20,7 @@
 /* A coarser level has too few places for a patch that lies wholly in source. */
 #define LEAST_LEVEL_PX 48
 /* The surface is judged on a picture of about this width. */
-#define SURFACE_LONGEST_PX 800
+#define SURFACE_LONGEST_PX 1100
 /* Raised when it is likely: most flat textures measure .4 .. 1.2 (their contrast within a texel
  * leans less than they do), stones 0 .. .1, an old pier's boards .15 .. .2. With nothing to lean
  * both maps are the same, and the raised one keeps to whole pixels. */

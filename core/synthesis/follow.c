@@ -8,6 +8,12 @@
 #define FAR_PX 32
 #define PINNED_WITHIN_PX 2.f
 #define PINNED_STEP_PX .25f
+/* And it must go on: in each of so many windows of so many px, one behind the other, its profile
+ * must correlate with its own. Crests and hedges look like lines for one window: .1 to .7 in the
+ * third, cracks and boards .84 and more. */
+#define GOES_ON_WINDOWS 3
+#define GOES_ON_PX 24
+#define LEAST_GOING_ON .75f
 /* From piece to piece it may bend by so much. */
 #define MOST_BEND_PX 1.f
 /* The part of its contrast that must be left, in the mean over the pieces. Dotted cracks keep .8,
@@ -57,6 +63,25 @@ static bool pin(const frame *f, float outwards, float *x, float *y, rc_profile *
   }
   *x -= f->ruler.uy * moved, *y += f->ruler.ux * moved;
   return rc_profile_mean(&f->ruler, *x, *y, from, outwards, RC_PROFILE_NEAR_PX, own);
+}
+
+/* Where the picture or the source ends, so may the line. */
+static bool goes_on(const frame *f, float outwards, float x, float y, const rc_profile *own) {
+  float square = rc_profile_dot(own, own);
+  for (int k = 0; k < GOES_ON_WINDOWS; k++) {
+    float most = -1, from = RC_PROFILE_FROM_PX + GOES_ON_PX * (float)k;
+    bool known = false;
+    for (float across = -PINNED_WITHIN_PX; across <= PINNED_WITHIN_PX; across += .5f) {
+      rc_profile here;
+      if (!rc_profile_mean(&f->ruler, x - f->ruler.uy * across, y + f->ruler.ux * across,
+                           outwards * from, outwards, GOES_ON_PX, &here))
+        continue;
+      float likeness = rc_profile_dot(&here, own) / sqrtf(square * rc_profile_dot(&here, &here));
+      known = true, most = fmaxf(most, likeness); /* fmaxf: an even window has no likeness */
+    }
+    if (known && most < LEAST_GOING_ON) return false;
+  }
+  return true;
 }
 
 /* Where the straight line's point t (0 = a, 1 = b) comes from when the line is moved along itself
@@ -138,6 +163,8 @@ bool rc_follow(const rc_brightness *picture, const rc_chart *chart, rc_crossing 
   if (!pin(&f, -1, &line->ax, &line->ay, &own_a) || !pin(&f, 1, &line->bx, &line->by, &own_b))
     return false;
   set_frame(&f);
+  if (!goes_on(&f, -1, line->ax, line->ay, &own_a) || !goes_on(&f, 1, line->bx, line->by, &own_b))
+    return false;
   for (size_t i = 0; i < sizeof splits / sizeof *splits; i++) {
     float kept = follow_both(&f, splits[i], &own_a, &own_b);
     if (kept <= most) continue;
