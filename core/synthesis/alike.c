@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -31,7 +32,7 @@ typedef struct looks {
   float value[LOOKS];
 } looks;
 
-/* Sums over all pixels above and to the left: known ones, colours, brightness and its square. */
+/* Of known pixels: how many, colours, brightness and its square. */
 typedef struct sums {
   double known, colour[3], bright, square;
 } sums;
@@ -39,55 +40,56 @@ typedef struct sums {
 typedef struct comparison {
   const rc_image *image;
   const rc_mask *flags;
-  sums *integral; /* (width + 1) * (height + 1) */
-  looks *sample;
+  int width, height;
+  sums *column;       /* of each thread: width of them, of a square's rows */
+  looks *sample;      /* in the order of their pixels */
   int32_t *sample_at; /* pixels */
   int sample_count;
   float most; /* square of the distance from which on looks are unlike */
   uint8_t *unlike;
 } comparison;
 
-static void integrate(const comparison *c) {
-  size_t stride = (size_t)c->image->width + 1;
-  for (int y = 0; y < c->image->height; y++) {
-    sums row = {0, {0, 0, 0}, 0, 0};
-    for (int x = 0; x < c->image->width; x++) {
-      const sums *above = &c->integral[(size_t)y * stride + (size_t)x + 1];
-      sums *here = &c->integral[(size_t)(y + 1) * stride + (size_t)x + 1];
-      if (*rc_flag(c->flags, x, y) & RC_KNOWN) {
-        const float *v = rc_pixel(c->image, x, y);
-        bool grey = c->image->channels == 1;
-        double bright = grey ? v[0] : .3 * v[0] + .59 * v[1] + .11 * v[2];
-        row.known++, row.bright += bright, row.square += bright * bright;
-        for (int k = 0; k < 3; k++) row.colour[k] += v[grey ? 0 : k];
-      }
-      here->known = above->known + row.known;
-      for (int k = 0; k < 3; k++) here->colour[k] = above->colour[k] + row.colour[k];
-      here->bright = above->bright + row.bright;
-      here->square = above->square + row.square;
+static void add(sums *to, const sums *s) {
+  to->known += s->known, to->bright += s->bright, to->square += s->square;
+  for (int k = 0; k < 3; k++) to->colour[k] += s->colour[k];
+}
+
+static sums pixel_sums(const comparison *c, int x, int y) {
+  sums s = {0, {0, 0, 0}, 0, 0};
+  if (!(*rc_flag(c->flags, x, y) & RC_KNOWN)) return s;
+  const float *v = rc_pixel(c->image, x, y);
+  bool grey = c->image->channels == 1;
+  s.known = 1;
+  for (int k = 0; k < 3; k++) s.colour[k] = v[grey ? 0 : k];
+  s.bright = .3 * s.colour[0] + .59 * s.colour[1] + .11 * s.colour[2];
+  s.square = s.bright * s.bright;
+  return s;
+}
+
+/* Of the columns of the squares around a row's pixels. */
+static sums *sum_columns(const comparison *c, int y, int thread) {
+  sums *column = c->column + (size_t)thread * (size_t)c->width;
+  memset(column, 0, (size_t)c->width * sizeof *column);
+  for (int row = y - HALF_PX; row <= y + HALF_PX; row++)
+    for (int x = 0; row >= 0 && row < c->height && x < c->width; x++) {
+      sums s = pixel_sums(c, x, row);
+      add(&column[x], &s);
     }
-  }
+  return column;
 }
 
 /* False where too little is known. */
-static bool look(const comparison *c, int x, int y, looks *out) {
-  int width = c->image->width, height = c->image->height;
-  int x0 = x - HALF_PX < 0 ? 0 : x - HALF_PX, x1 = x + HALF_PX + 1;
-  int y0 = y - HALF_PX < 0 ? 0 : y - HALF_PX, y1 = y + HALF_PX + 1;
-  if (x1 > width) x1 = width;
-  if (y1 > height) y1 = height;
-  size_t stride = (size_t)width + 1, top = (size_t)y0 * stride, bottom = (size_t)y1 * stride;
-  const sums *a = &c->integral[top + (size_t)x0], *b = &c->integral[top + (size_t)x1];
-  const sums *d = &c->integral[bottom + (size_t)x0], *e = &c->integral[bottom + (size_t)x1];
-  double n = e->known - d->known - b->known + a->known;
-  if (n < LEAST_KNOWN * (x1 - x0) * (y1 - y0)) return false;
-  for (int k = 0; k < 3; k++) {
-    double mean = (e->colour[k] - d->colour[k] - b->colour[k] + a->colour[k]) / n;
-    out->value[k] = (float)(mean * .57735026918962576); /* three channels weigh as one */
-  }
-  double bright = (e->bright - d->bright - b->bright + a->bright) / n;
-  double square = (e->square - d->square - b->square + a->square) / n;
-  out->value[3] = (float)sqrt(fmax(square - bright * bright, 0));
+static bool look(const comparison *c, const sums *column, int x, int y, looks *out) {
+  int x0 = x < HALF_PX ? 0 : x - HALF_PX, y0 = y < HALF_PX ? 0 : y - HALF_PX;
+  int x1 = x + HALF_PX >= c->width ? c->width : x + HALF_PX + 1;
+  int y1 = y + HALF_PX >= c->height ? c->height : y + HALF_PX + 1;
+  sums s = {0, {0, 0, 0}, 0, 0};
+  for (int i = x0; i < x1; i++) add(&s, &column[i]);
+  if (s.known < LEAST_KNOWN * (x1 - x0) * (y1 - y0)) return false;
+  for (int k = 0; k < 3; k++) /* three channels weigh as one */
+    out->value[k] = (float)(s.colour[k] / s.known * .57735026918962576);
+  double bright = s.bright / s.known;
+  out->value[3] = (float)sqrt(fmax(s.square / s.known - bright * bright, 0));
   return true;
 }
 
@@ -97,26 +99,36 @@ static float distance_of(const looks *p, const looks *q) {
   return sum;
 }
 
-/* Sources beside the hole, every n-th of them. */
-static recede_status take_samples(rc_context *context, comparison *c) {
-  int width = c->image->width, found = 0, step = 1;
-  size_t pixels = (size_t)width * (size_t)c->image->height;
-  uint8_t *outside, *depth;
+/* Marks sources beside the hole. */
+static recede_status mark_beside(rc_context *context, const comparison *c, uint8_t *beside) {
+  size_t pixels = (size_t)c->width * (size_t)c->height;
+  uint8_t *outside;
+  rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, pixels, &outside));
-  RC_TRY(RC_NEW(context, pixels, &depth));
   for (size_t i = 0; i < pixels; i++) outside[i] = !(c->flags->data[i] & RC_TARGET);
-  rc_distance_inside(outside, 1, width, c->image->height, false, depth);
-  for (size_t i = 0; i < pixels; i++) {
-    outside[i] = depth[i] && depth[i] <= BESIDE_PX && c->flags->data[i] & RC_SOURCE;
-    found += outside[i];
-  }
-  step = found / MOST_SAMPLES + 1, found = 0;
-  for (size_t i = 0; i < pixels; i++) {
-    int x = (int)(i % (size_t)width), y = (int)(i / (size_t)width);
-    if (!outside[i] || found++ % step || !look(c, x, y, &c->sample[c->sample_count])) continue;
-    c->sample_at[c->sample_count++] = (int32_t)i;
-  }
+  rc_distance_inside(outside, 1, c->width, c->height, false, beside);
+  for (size_t i = 0; i < pixels; i++)
+    beside[i] = beside[i] && beside[i] <= BESIDE_PX && c->flags->data[i] & RC_SOURCE;
+  rc_release(context, mark);
   return RECEDE_OK;
+}
+
+/* Every n-th of them. Their looks are taken in the order of the pixels, so that a row's columns are
+ * summed once. */
+static void take_samples(comparison *c, const uint8_t *beside) {
+  size_t pixels = (size_t)c->width * (size_t)c->height;
+  const sums *column = NULL;
+  int found = 0, row = -1;
+  for (size_t i = 0; i < pixels; i++) found += beside[i];
+  int step = found / MOST_SAMPLES + 1;
+  found = 0;
+  for (size_t i = 0; i < pixels; i++) {
+    int x = (int)(i % (size_t)c->width), y = (int)(i / (size_t)c->width);
+    if (!beside[i] || found++ % step) continue;
+    if (y != row) column = sum_columns(c, row = y, 0);
+    if (look(c, column, x, y, &c->sample[c->sample_count]))
+      c->sample_at[c->sample_count++] = (int32_t)i;
+  }
 }
 
 static int by_value(const void *a, const void *b) {
@@ -127,7 +139,7 @@ static int by_value(const void *a, const void *b) {
 /* How much samples differ from those that share none of their pixels: the percentile of the
  * squares. Infinite where there are no such. */
 static float own_spread(const comparison *c, float *nearest) {
-  int width = c->image->width, count = 0;
+  int width = c->width, count = 0;
   for (int i = 0; i < c->sample_count; i++) {
     float least = INFINITY;
     for (int k = 0; k < c->sample_count; k++) {
@@ -147,8 +159,8 @@ static float own_spread(const comparison *c, float *nearest) {
 static double variance_of(const comparison *c) {
   double sum[3] = {0, 0, 0}, square[3] = {0, 0, 0}, count = 0, total = 0;
   int channels = c->image->channels;
-  for (int y = 0; y < c->image->height; y++)
-    for (int x = 0; x < c->image->width; x++) {
+  for (int y = 0; y < c->height; y++)
+    for (int x = 0; x < c->width; x++) {
       if (!(*rc_flag(c->flags, x, y) & RC_SOURCE)) continue;
       const float *v = rc_pixel(c->image, x, y);
       for (int k = 0; k < channels; k++) sum[k] += v[k], square[k] += (double)v[k] * v[k];
@@ -161,21 +173,21 @@ static double variance_of(const comparison *c) {
 
 static void compare_row(void *user, int y, int thread) {
   const comparison *c = user;
-  (void)thread;
-  for (int x = 0; x < c->image->width; x++) {
+  const sums *column = sum_columns(c, y, thread);
+  uint8_t *unlike = c->unlike + (size_t)y * (size_t)c->width;
+  for (int x = 0; x < c->width; x++) {
     looks here;
-    uint8_t *unlike = c->unlike + (size_t)y * (size_t)c->image->width + (size_t)x;
-    *unlike = 0;
-    if (!(*rc_flag(c->flags, x, y) & RC_KNOWN) || !look(c, x, y, &here)) continue;
     int i = 0;
+    unlike[x] = 0;
+    if (!(*rc_flag(c->flags, x, y) & RC_KNOWN) || !look(c, column, x, y, &here)) continue;
     while (i < c->sample_count && distance_of(&here, &c->sample[i]) > c->most) i++;
-    *unlike = i == c->sample_count;
+    unlike[x] = i == c->sample_count;
   }
 }
 
 static bool enough_left(const comparison *c) {
   uint64_t target = 0, left = 0;
-  for (size_t i = 0; i < (size_t)c->image->width * (size_t)c->image->height; i++) {
+  for (size_t i = 0; i < (size_t)c->width * (size_t)c->height; i++) {
     target += c->flags->data[i] & RC_TARGET ? 1 : 0;
     left += c->flags->data[i] & RC_SOURCE && !c->unlike[i] ? 1 : 0;
   }
@@ -185,27 +197,29 @@ static bool enough_left(const comparison *c) {
 static void take_source(const comparison *c, const rc_mask *flags, int shift) {
   for (int y = 0; y < flags->height; y++)
     for (int x = 0; x < flags->width; x++) {
-      size_t at = (size_t)(y >> shift) * (size_t)c->image->width + (size_t)(x >> shift);
+      size_t at = (size_t)(y >> shift) * (size_t)c->width + (size_t)(x >> shift);
       if (c->unlike[at]) *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
     }
 }
 
 recede_status rc_keep_alike(rc_context *context, const rc_image *images, const rc_mask *flags,
                             int levels) {
-  comparison c = {.image = &images[levels - 1], .flags = &flags[levels - 1]};
-  size_t width = (size_t)c.image->width, height = (size_t)c.image->height;
+  const rc_image *image = &images[levels - 1];
+  comparison c = {
+      .image = image, .flags = &flags[levels - 1], .width = image->width, .height = image->height};
+  size_t width = (size_t)c.width, pixels = width * (size_t)c.height;
   float *nearest;
   rc_block *mark = rc_mark(context);
-  RC_TRY(RC_NEW_ZERO(context, (width + 1) * (height + 1), &c.integral));
+  RC_TRY(RC_NEW(context, (size_t)context->threads * width, &c.column));
   RC_TRY(RC_NEW(context, MOST_SAMPLES, &c.sample));
   RC_TRY(RC_NEW(context, MOST_SAMPLES, &c.sample_at));
   RC_TRY(RC_NEW(context, MOST_SAMPLES, &nearest));
-  RC_TRY(RC_NEW(context, width * height, &c.unlike));
-  integrate(&c);
-  RC_TRY(take_samples(context, &c));
+  RC_TRY(RC_NEW(context, pixels, &c.unlike));
+  RC_TRY(mark_beside(context, &c, c.unlike));
+  take_samples(&c, c.unlike);
   double own = TIMES_OWN * TIMES_OWN * own_spread(&c, nearest);
   c.most = (float)fmax(own, LEAST_UNLIKE * LEAST_UNLIKE * variance_of(&c));
-  RC_TRY(rc_parallel(context, (int)height, compare_row, &c));
+  RC_TRY(rc_parallel(context, c.height, compare_row, &c));
   for (int exponent = enough_left(&c) ? levels - 1 : -1; exponent >= 0; exponent--)
     take_source(&c, &flags[exponent], levels - 1 - exponent);
   rc_release(context, mark);

@@ -13,9 +13,10 @@
 
 /* Broken lines are seen first: they cost on top of a start's misfit. Starts that continue them may
  * fit worse, for finer levels break what the coarsest still has, and thin lines are faint there. A
- * lattice has its own lines: they get one try. */
+ * lattice has its own lines: they get one try, and with more favour bricks break. */
 #define PRICE_OF_BROKEN_LINES .3
-#define FAVOUR_OF_LINES 1.2
+#define FAVOUR_OF_LINES 1.3
+#define FAVOUR_IN_LATTICE 1.2
 
 /* Some of all trials: starts by patches first, then those of few whole copies. */
 typedef struct starts {
@@ -121,7 +122,8 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
     RC_TRY(
         try_starts(context, e, &along_lines, &p, level, scratch, &with_lines, &misfit_with_lines));
     misfit_with_lines += price_of_broken_lines(e, level, &with_lines);
-    e->continue_lines = misfit_with_lines < FAVOUR_OF_LINES * misfit;
+    double favour = lattice ? FAVOUR_IN_LATTICE : FAVOUR_OF_LINES;
+    e->continue_lines = misfit_with_lines < favour * misfit;
     if (e->continue_lines) return RECEDE_OK;
     RC_FREE(context, &level->locked);
   }
