@@ -8,9 +8,9 @@
 #define FAR_PX 32
 #define PINNED_WITHIN_PX 2.f
 #define PINNED_STEP_PX .25f
-/* And it must go on: in each of so many windows of so many px, one behind the other, its profile
- * must correlate with its own. Crests and hedges look like lines for one window: .1 to .7 in the
- * third, cracks and boards .84 and more. */
+/* And one that no other vouches for must go on: in each of so many windows of so many px, one
+ * behind the other, its profile must correlate with its own. Crests and hedges look like lines for
+ * one window: .1 to .7 in the third, cracks and boards .84 and more. */
 #define GOES_ON_WINDOWS 3
 #define GOES_ON_PX 24
 #define LEAST_GOING_ON .75f
@@ -152,7 +152,7 @@ static float follow_both(const frame *f, float split, const rc_profile *own_a,
   return sum / RC_LINE_PIECES;
 }
 
-bool rc_follow(const rc_brightness *picture, const rc_chart *chart, rc_crossing *line) {
+bool rc_follow(const rc_brightness *picture, const rc_chart *chart, bool alone, rc_crossing *line) {
   static const float splits[] = {1, 0, .5f, .25f, .75f};
   rc_profile own_a, own_b;
   float most = LEAST_KEPT;
@@ -163,7 +163,8 @@ bool rc_follow(const rc_brightness *picture, const rc_chart *chart, rc_crossing 
   if (!pin(&f, -1, &line->ax, &line->ay, &own_a) || !pin(&f, 1, &line->bx, &line->by, &own_b))
     return false;
   set_frame(&f);
-  if (!goes_on(&f, -1, line->ax, line->ay, &own_a) || !goes_on(&f, 1, line->bx, line->by, &own_b))
+  if (alone &&
+      (!goes_on(&f, -1, line->ax, line->ay, &own_a) || !goes_on(&f, 1, line->bx, line->by, &own_b)))
     return false;
   for (size_t i = 0; i < sizeof splits / sizeof *splits; i++) {
     float kept = follow_both(&f, splits[i], &own_a, &own_b);

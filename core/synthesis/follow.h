@@ -17,7 +17,8 @@ typedef struct rc_brightness {
 } rc_brightness;
 
 /* Moves the line's ends to where it meets the hole and sets its pieces' sources. False: it fades or
- * leaves the picture before the hole could be crossed. chart: of the same level. */
-bool rc_follow(const rc_brightness *picture, const rc_chart *chart, rc_crossing *line);
+ * leaves the picture before the hole could be crossed; or, alone, no other vouching for it, it does
+ * not go on for long. chart: of the same level. */
+bool rc_follow(const rc_brightness *picture, const rc_chart *chart, bool alone, rc_crossing *line);
 
 #endif

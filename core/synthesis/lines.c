@@ -254,13 +254,15 @@ static void keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES
   *count = kept;
 }
 
-/* Keeps what can be continued, in px of the finest level. */
+/* Keeps what can be continued, in px of the finest level. The first must go on by itself, and then
+ * vouches for those parallel to it. */
 static void follow(const finder *f, const rc_chart *chart, int exponent,
                    rc_crossing lines[RC_MOST_LINES], int *count) {
   int kept = 0;
   for (int i = 0; i < *count; i++) {
     rc_crossing c = lines[i];
-    if (rc_follow(&f->picture, chart, &c)) lines[kept++] = rc_crossing_coarser(c, -exponent);
+    if (rc_follow(&f->picture, chart, kept == 0, &c))
+      lines[kept++] = rc_crossing_coarser(c, -exponent);
   }
   *count = kept;
 }
