@@ -303,87 +303,6 @@ static void surface_is_told(void) {
   g_assert_cmpint(surface_of(picture_of_discs(480, 360, 14, 50), 50), ==, RECEDE_SURFACE_RAISED);
 }
 
-/* Bright flowers, 8 px across, on a tenth of a lawn. */
-static picture lawn(void) {
-  picture p = picture_new(320, 240, 1, RECEDE_U8);
-  GRand *chance = g_rand_new_with_seed(5);
-  for (int y = 0; y < 240; y++)
-    for (int x = 0; x < 320; x++)
-      picture_set(&p, x, y, 0, (float)g_rand_double_range(chance, .2, .4));
-  for (int n = 0; n < 150; n++) {
-    int x0 = g_rand_int_range(chance, -4, 320), y0 = g_rand_int_range(chance, -4, 240);
-    for (int y = MAX(y0, 0); y < MIN(y0 + 8, 240); y++)
-      for (int x = MAX(x0, 0); x < MIN(x0 + 8, 320); x++)
-        if (hypot(x - x0 - 3.5, y - y0 - 3.5) < 4) picture_set(&p, x, y, 0, .9f);
-  }
-  g_rand_free(chance);
-  return p;
-}
-
-/* How much less contrast holes in a lawn have than the lawn, in octaves: mean over seeds. */
-static double flowers_lost(const char *settings) {
-  double sum = 0;
-  for (int seed = 0; seed < 8; seed++) {
-    task t = task_new(lawn(), settings);
-    t.params.seed = seed;
-    task_hole(&t, (area){100, 70, 220, 170});
-    task_succeeds(&t);
-    double known = moments_of(&t.image, &t.mask, false, everything, 0).deviation;
-    sum += log2(known / moments_of(&t.result, &t.mask, true, everything, 0).deviation) / 8;
-    task_clear(&t);
-  }
-  g_test_message("%s: %.3f octaves of contrast lost", settings, sum);
-  return sum;
-}
-
-/* Lawn resembles everything: often used sources cost more, and the best of some starts is kept. */
-static void flowers_go_on(void) {
-  double kept = flowers_lost("orientation=frontal engine-starts=8");
-  double bland = flowers_lost("orientation=frontal engine-starts=1 engine-usage=0");
-  g_assert_cmpfloat(fabs(kept), <, fabs(bland) - .03);
-}
-
-/* Pebbles, dark and bright, and from column 200 on an even wall as bright as they are in the mean.
- */
-static picture pebbles_and_wall(void) {
-  picture p = picture_new(320, 240, 1, RECEDE_U8);
-  for (int y = 0; y < 240; y++)
-    for (int x = 0; x < 320; x++) {
-      double chance = noise_at((x + y / 9 * 5) / 9, y / 9, 3);
-      double pebble = chance < .5 ? .2 + .4 * chance : .4 + .4 * chance;
-      picture_set(&p, x, y, 0, (float)((x < 200 ? pebble : .5) + .02 * noise_at(x, y, 4)));
-    }
-  return p;
-}
-
-/* The part of a hole among the pebbles that shows the wall; from_wall: which alone is source. */
-static double wall_in_hole(const char *settings, bool from_wall) {
-  const area hole = {50, 70, 150, 170};
-  double sum = 0;
-  for (int seed = 0; seed < 4; seed++) {
-    task t = task_new(pebbles_and_wall(), settings);
-    t.params.seed = seed;
-    task_hole(&t, hole);
-    if (from_wall) {
-      t.source = picture_new(320, 240, 1, RECEDE_U8);
-      picture_fill(&t.source, (area){200, 0, 320, 240}, 1);
-    }
-    task_succeeds(&t);
-    for (int y = hole.y0; y < hole.y1; y++)
-      for (int x = hole.x0; x < hole.x1; x++)
-        sum += fabs(picture_get(&t.result, x, y, 0) - .51) < .02 ? 1. / 40000 : 0;
-    task_clear(&t);
-  }
-  g_test_message("%s: %.3f of the hole is wall", settings, sum);
-  return sum;
-}
-
-static void walls_stay_out(void) {
-  g_assert_cmpfloat(wall_in_hole("orientation=frontal quality=draft", false), <, .03);
-  g_assert_cmpfloat(wall_in_hole("orientation=frontal quality=draft engine-alike=0", false), >, .2);
-  g_assert_cmpfloat(wall_in_hole("orientation=frontal quality=draft", true), >, .5);
-}
-
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/plane/same-bytes", same_for_threads_and_kernels);
@@ -397,7 +316,5 @@ int main(int argc, char **argv) {
   g_test_add_func("/plane/synthesis", synthesis_keeps_the_exemplar);
   g_test_add_func("/plane/far", texture_reaches_the_horizon);
   g_test_add_func("/plane/surface", surface_is_told);
-  g_test_add_func("/plane/bland", flowers_go_on);
-  g_test_add_func("/plane/alike", walls_stay_out);
   return g_test_run();
 }
