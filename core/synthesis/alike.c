@@ -2,13 +2,13 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "image/distance.h"
+#include "kernels/kernels.h"
 
-/* A pixel's looks are those of the square around it, about half a hole wide. */
+/* A pixel's looks are those of the square around it: half a hole wide, unless the hole is thin. */
 #define HALF_PX 4
 /* So much of the square must be known. */
 #define LEAST_KNOWN .4
@@ -16,14 +16,16 @@
 #define BESIDE_PX 9
 #define LEAST_SAMPLES 32
 #define MOST_SAMPLES 512
-/* Unlike is what differs from all samples by more than they do from one another, at a distance,
- * twice the 90th percentile; and by more than this part of the sources' deviation. Textures that
- * fill the picture reach .25, roofs and a wall between them .5. */
+/* Unlike: its distance to every sample is more than twice what the samples have, 90 of 100, to the
+ * nearest other that shares no pixel with them; and more than this part of the sources' deviation.
+ * Textures that fill the picture reach .25, roofs and a wall between them .5. */
 #define TIMES_OWN 2.
 #define OWN_PERCENTILE 90
 #define LEAST_UNLIKE .3
 /* The hole's pixels in sources that must be left. */
 #define ENOUGH_SOURCE 3
+/* Of larger levels only every n-th pixel is compared: thin holes have no coarse one. */
+#define MOST_COMPARED (1 << 16)
 
 /* Mean colour and the deviation of brightness. */
 #define LOOKS 4
@@ -41,12 +43,13 @@ typedef struct comparison {
   const rc_image *image;
   const rc_mask *flags;
   int width, height;
-  sums *column;       /* of each thread: width of them, of a square's rows */
-  looks *sample;      /* in the order of their pixels */
+  looks *sample;
   int32_t *sample_at; /* pixels */
   int sample_count;
-  float most; /* square of the distance from which on looks are unlike */
-  uint8_t *unlike;
+  float most;        /* square of the distance from which on looks are unlike */
+  int step;          /* px of the level from one that is compared to the next */
+  int columns, rows; /* how many are */
+  uint8_t *unlike;   /* columns * rows */
 } comparison;
 
 static void add(sums *to, const sums *s) {
@@ -66,30 +69,22 @@ static sums pixel_sums(const comparison *c, int x, int y) {
   return s;
 }
 
-/* Of the columns of the squares around a row's pixels. */
-static sums *sum_columns(const comparison *c, int y, int thread) {
-  sums *column = c->column + (size_t)thread * (size_t)c->width;
-  memset(column, 0, (size_t)c->width * sizeof *column);
-  for (int row = y - HALF_PX; row <= y + HALF_PX; row++)
-    for (int x = 0; row >= 0 && row < c->height && x < c->width; x++) {
-      sums s = pixel_sums(c, x, row);
-      add(&column[x], &s);
-    }
-  return column;
-}
-
 /* False where too little is known. */
-static bool look(const comparison *c, const sums *column, int x, int y, looks *out) {
+static bool look(const comparison *c, int x, int y, looks *out) {
   int x0 = x < HALF_PX ? 0 : x - HALF_PX, y0 = y < HALF_PX ? 0 : y - HALF_PX;
   int x1 = x + HALF_PX >= c->width ? c->width : x + HALF_PX + 1;
   int y1 = y + HALF_PX >= c->height ? c->height : y + HALF_PX + 1;
-  sums s = {0, {0, 0, 0}, 0, 0};
-  for (int i = x0; i < x1; i++) add(&s, &column[i]);
-  if (s.known < LEAST_KNOWN * (x1 - x0) * (y1 - y0)) return false;
+  sums sum = {0, {0, 0, 0}, 0, 0};
+  for (int j = y0; j < y1; j++)
+    for (int i = x0; i < x1; i++) {
+      sums s = pixel_sums(c, i, j);
+      add(&sum, &s);
+    }
+  if (sum.known < LEAST_KNOWN * (x1 - x0) * (y1 - y0)) return false;
   for (int k = 0; k < 3; k++) /* three channels weigh as one */
-    out->value[k] = (float)(s.colour[k] / s.known * .57735026918962576);
-  double bright = s.bright / s.known;
-  out->value[3] = (float)sqrt(fmax(s.square / s.known - bright * bright, 0));
+    out->value[k] = (float)(sum.colour[k] / sum.known * .57735026918962576);
+  double bright = sum.bright / sum.known;
+  out->value[3] = (float)sqrt(fmax(sum.square / sum.known - bright * bright, 0));
   return true;
 }
 
@@ -113,21 +108,16 @@ static recede_status mark_beside(rc_context *context, const comparison *c, uint8
   return RECEDE_OK;
 }
 
-/* Every n-th of them. Their looks are taken in the order of the pixels, so that a row's columns are
- * summed once. */
 static void take_samples(comparison *c, const uint8_t *beside) {
   size_t pixels = (size_t)c->width * (size_t)c->height;
-  const sums *column = NULL;
-  int found = 0, row = -1;
+  int found = 0;
   for (size_t i = 0; i < pixels; i++) found += beside[i];
   int step = found / MOST_SAMPLES + 1;
   found = 0;
   for (size_t i = 0; i < pixels; i++) {
     int x = (int)(i % (size_t)c->width), y = (int)(i / (size_t)c->width);
-    if (!beside[i] || found++ % step) continue;
-    if (y != row) column = sum_columns(c, row = y, 0);
-    if (look(c, column, x, y, &c->sample[c->sample_count]))
-      c->sample_at[c->sample_count++] = (int32_t)i;
+    if (!beside[i] || found++ % step || !look(c, x, y, &c->sample[c->sample_count])) continue;
+    c->sample_at[c->sample_count++] = (int32_t)i;
   }
 }
 
@@ -171,57 +161,116 @@ static double variance_of(const comparison *c) {
   return fmax(total, 0) / channels;
 }
 
-static void compare_row(void *user, int y, int thread) {
+static void compare_row(void *user, int row, int thread) {
   const comparison *c = user;
-  const sums *column = sum_columns(c, y, thread);
-  uint8_t *unlike = c->unlike + (size_t)y * (size_t)c->width;
-  for (int x = 0; x < c->width; x++) {
+  (void)thread;
+  for (int column = 0; column < c->columns; column++) {
+    int x = column * c->step + c->step / 2, y = row * c->step + c->step / 2, i = 0;
+    uint8_t *unlike = c->unlike + (size_t)row * (size_t)c->columns + (size_t)column;
     looks here;
-    int i = 0;
-    unlike[x] = 0;
-    if (!(*rc_flag(c->flags, x, y) & RC_KNOWN) || !look(c, column, x, y, &here)) continue;
+    *unlike = 0;
+    if (x >= c->width) x = c->width - 1;
+    if (y >= c->height) y = c->height - 1;
+    if (!(*rc_flag(c->flags, x, y) & RC_KNOWN) || !look(c, x, y, &here)) continue;
     while (i < c->sample_count && distance_of(&here, &c->sample[i]) > c->most) i++;
-    unlike[x] = i == c->sample_count;
+    *unlike = i == c->sample_count;
   }
 }
 
-static bool enough_left(const comparison *c) {
-  uint64_t target = 0, left = 0;
-  for (size_t i = 0; i < (size_t)c->width * (size_t)c->height; i++) {
+static bool is_unlike(const comparison *c, int x, int y) {
+  return c->unlike[(size_t)(y / c->step) * (size_t)c->columns + (size_t)(x / c->step)];
+}
+
+/* How many sources there are, and of those at the hole's own scales how many have room for a patch;
+ * all: with what is unlike. */
+typedef struct supply {
+  uint64_t sources, places;
+} supply;
+
+static recede_status take_stock(rc_context *context, const comparison *c, const rc_line *line,
+                                bool all, supply *stock) {
+  size_t pixels = (size_t)c->width * (size_t)c->height;
+  double least = INFINITY, most = 0;
+  uint8_t *left, *room;
+  rc_block *mark = rc_mark(context);
+  *stock = (supply){0, 0};
+  RC_TRY(RC_NEW(context, pixels, &left));
+  RC_TRY(RC_NEW(context, pixels, &room));
+  for (int y = 0; y < c->height; y++)
+    for (int x = 0; x < c->width; x++) {
+      uint8_t flag = *rc_flag(c->flags, x, y);
+      size_t at = (size_t)y * (size_t)c->width + (size_t)x;
+      left[at] = flag & RC_SOURCE && (all || !is_unlike(c, x, y));
+      stock->sources += left[at];
+      if (!(flag & RC_TARGET)) continue;
+      least = fmin(least, rc_w(line, x, y)), most = fmax(most, rc_w(line, x, y));
+    }
+  rc_distance_inside(left, 1, c->width, c->height, true, room);
+  for (int y = 0; y < c->height; y++)
+    for (int x = 0; x < c->width; x++) {
+      double w = rc_w(line, x, y);
+      size_t at = (size_t)y * (size_t)c->width + (size_t)x;
+      stock->places += room[at] > RC_PATCH_RADIUS + 1 && w >= least && w <= most;
+    }
+  rc_release(context, mark);
+  return rc_poll(context);
+}
+
+/* Half of the places are enough in any case: a hole as wide as its texture never has many. */
+static recede_status enough_left(rc_context *context, const comparison *c, const rc_line *line,
+                                 bool *enough) {
+  uint64_t target = 0;
+  supply before, after;
+  for (size_t i = 0; i < (size_t)c->width * (size_t)c->height; i++)
     target += c->flags->data[i] & RC_TARGET ? 1 : 0;
-    left += c->flags->data[i] & RC_SOURCE && !c->unlike[i] ? 1 : 0;
-  }
-  return left >= ENOUGH_SOURCE * target;
+  RC_TRY(take_stock(context, c, line, true, &before));
+  RC_TRY(take_stock(context, c, line, false, &after));
+  *enough = after.sources >= ENOUGH_SOURCE * target &&
+            (after.places >= target || 2 * after.places >= before.places);
+  return RECEDE_OK;
 }
 
 static void take_source(const comparison *c, const rc_mask *flags, int shift) {
   for (int y = 0; y < flags->height; y++)
-    for (int x = 0; x < flags->width; x++) {
-      size_t at = (size_t)(y >> shift) * (size_t)c->width + (size_t)(x >> shift);
-      if (c->unlike[at]) *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
-    }
+    for (int x = 0; x < flags->width; x++)
+      if (is_unlike(c, x >> shift, y >> shift)) *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
 }
 
-recede_status rc_keep_alike(rc_context *context, const rc_image *images, const rc_mask *flags,
-                            int levels) {
+recede_status rc_keep_alike(rc_context *context, const rc_line *line, const rc_image *images,
+                            const rc_mask *flags, int levels) {
   const rc_image *image = &images[levels - 1];
-  comparison c = {
-      .image = image, .flags = &flags[levels - 1], .width = image->width, .height = image->height};
-  size_t width = (size_t)c.width, pixels = width * (size_t)c.height;
+  double unit = 1 << (levels - 1);
+  /* w at the level's pixel (x, y), whose middle is (x + .5) unit - .5 */
+  rc_line here = {line->a * unit, line->b * unit, line->c + (line->a + line->b) * (.5 * unit - .5)};
+  comparison c = {.image = image,
+                  .flags = &flags[levels - 1],
+                  .width = image->width,
+                  .height = image->height,
+                  .step = 1};
+  size_t pixels = (size_t)c.width * (size_t)c.height;
+  uint8_t *beside;
   float *nearest;
+  bool enough;
   rc_block *mark = rc_mark(context);
-  RC_TRY(RC_NEW(context, (size_t)context->threads * width, &c.column));
   RC_TRY(RC_NEW(context, MOST_SAMPLES, &c.sample));
   RC_TRY(RC_NEW(context, MOST_SAMPLES, &c.sample_at));
   RC_TRY(RC_NEW(context, MOST_SAMPLES, &nearest));
-  RC_TRY(RC_NEW(context, pixels, &c.unlike));
-  RC_TRY(mark_beside(context, &c, c.unlike));
-  take_samples(&c, c.unlike);
+  RC_TRY(RC_NEW(context, pixels, &beside));
+  RC_TRY(mark_beside(context, &c, beside));
+  RC_TRY(rc_poll(context));
+  take_samples(&c, beside);
+  RC_TRY(rc_poll(context));
   double own = TIMES_OWN * TIMES_OWN * own_spread(&c, nearest);
-  c.most = (float)fmax(own, LEAST_UNLIKE * LEAST_UNLIKE * variance_of(&c));
-  RC_TRY(rc_parallel(context, c.height, compare_row, &c));
-  for (int exponent = enough_left(&c) ? levels - 1 : -1; exponent >= 0; exponent--)
-    take_source(&c, &flags[exponent], levels - 1 - exponent);
+  if (isfinite(own)) {
+    c.most = (float)fmax(own, LEAST_UNLIKE * LEAST_UNLIKE * variance_of(&c));
+    while (pixels / (size_t)(c.step * c.step) > MOST_COMPARED) c.step++;
+    c.columns = (c.width + c.step - 1) / c.step, c.rows = (c.height + c.step - 1) / c.step;
+    RC_TRY(RC_NEW(context, c.columns * c.rows, &c.unlike));
+    RC_TRY(rc_parallel(context, c.rows, compare_row, &c));
+    RC_TRY(enough_left(context, &c, &here, &enough));
+    for (int exponent = enough ? levels - 1 : -1; exponent >= 0; exponent--)
+      take_source(&c, &flags[exponent], levels - 1 - exponent);
+  }
   rc_release(context, mark);
   return RECEDE_OK;
 }

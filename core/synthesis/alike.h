@@ -4,12 +4,12 @@
 #ifndef RECEDE_SYNTHESIS_ALIKE_H
 #define RECEDE_SYNTHESIS_ALIKE_H
 
-#include "image/image.h"
+#include "synthesis/problem.h"
 
-/* Takes RC_SOURCE from pixels that look like nothing beside the hole. images and flags: the
- * pyramid's levels, finest first; what is unlike is found at the coarsest. All stay where too few
- * would be left, or where nothing beside the hole is source. */
-recede_status rc_keep_alike(rc_context *context, const rc_image *images, const rc_mask *flags,
-                            int levels);
+/* Takes RC_SOURCE from pixels that look like nothing beside the hole. line: of the finest level;
+ * images and flags: the pyramid's levels, finest first; what is unlike is found at the coarsest.
+ * All stay where too little would be left, or where too little beside the hole is source. */
+recede_status rc_keep_alike(rc_context *context, const rc_line *line, const rc_image *images,
+                            const rc_mask *flags, int levels);
 
 #endif

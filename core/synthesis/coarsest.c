@@ -13,7 +13,8 @@
 
 /* Broken lines are seen first: they cost on top of a start's misfit. Starts that continue them may
  * fit worse, for finer levels break what the coarsest still has, and thin lines are faint there. A
- * lattice has its own lines: they get one try, and with more favour bricks break. */
+ * lattice carries lines of its own anyway: starts that continue them get one try there, and with
+ * more favour they break bricks. */
 #define PRICE_OF_BROKEN_LINES .3
 #define FAVOUR_OF_LINES 1.3
 #define FAVOUR_IN_LATTICE 1.2

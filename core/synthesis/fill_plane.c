@@ -23,7 +23,7 @@
 #define SURFACE_LONGEST_PX 1100
 /* Raised when it is likely: most flat textures measure .4 .. 1.2 (their contrast within a texel
  * leans less than they do), stones 0 .. .1, an old pier's boards .15 .. .2. With nothing to lean
- * both maps are the same, and the raised one keeps to whole pixels. */
+ * both maps are the same, and the raised one keeps to whole pixels but along lines. */
 #define LEAN_OF_RAISED .32
 /* Bytes span this many standard deviations to each side. */
 #define DEVIATIONS 4.f
@@ -85,17 +85,20 @@ static float byte_gain(const rc_image *residual, const rc_mask *flags) {
   return deviation > 1e-9 ? (float)(127 / (DEVIATIONS * deviation)) : 1.f;
 }
 
+/* Leaves *raised as it is where nothing can be told. */
 static recede_status choose_surface(rc_context *context, const rc_problem *problem,
                                     const rc_descent *e, bool *raised) {
   int exponent = 0;
   double lean, error = 0;
-  *raised = e->params->surface == RECEDE_SURFACE_RAISED;
-  if (e->params->surface != RECEDE_SURFACE_AUTO) return RECEDE_OK;
+  if (e->params->surface != RECEDE_SURFACE_AUTO) {
+    *raised = e->params->surface == RECEDE_SURFACE_RAISED;
+    return RECEDE_OK;
+  }
   while (exponent + 1 < e->level_count && e->images[exponent].width > SURFACE_LONGEST_PX)
     exponent++;
   RC_TRY(rc_measure_lean(context, problem, &e->images[exponent], &e->flags[exponent], exponent,
                          &lean, &error));
-  *raised = isnan(lean) || lean + error < LEAN_OF_RAISED;
+  if (!isnan(lean)) *raised = lean + error < LEAN_OF_RAISED;
   return RECEDE_OK;
 }
 
@@ -157,7 +160,7 @@ static recede_status compose(rc_context *context, const rc_descent *e, const rc_
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                             const recede_params *params, rc_image *filled) {
   rc_descent e = {.params = params, .kernels = rc_kernels_select(context->host.kernel)};
-  bool raised;
+  bool raised = true;
   rc_tone tone;
   rc_level finest;
   if (!e.kernels)
@@ -168,9 +171,11 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(rc_tone_apply(context, &tone, &problem->flags, RC_KNOWN, -1, filled));
   RC_TRY(rc_stage(context, "pyramid", .07, .1));
   RC_TRY(build_pyramid(context, problem, filled, &e));
+  RC_TRY(choose_surface(context, problem, &e, &raised));
   if (params->engine_alike && !problem->chosen)
-    RC_TRY(rc_keep_alike(context, e.images, e.flags, e.level_count));
+    RC_TRY(rc_keep_alike(context, &problem->line, e.images, e.flags, e.level_count));
   e.gain = byte_gain(filled, &problem->flags);
+  /* Again, for it is the texture's that counts; what is alike may be too little to tell. */
   RC_TRY(choose_surface(context, problem, &e, &raised));
   e.chart = chart_of(problem, raised);
   context->report.surface = raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;

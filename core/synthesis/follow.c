@@ -14,6 +14,7 @@
 #define GOES_ON_WINDOWS 3
 #define GOES_ON_PX 24
 #define LEAST_GOING_ON .75f
+#define LEAST_OF_CONTRAST .02f /* of its square: less is another thing's slope */
 /* From piece to piece it may bend by so much. */
 #define MOST_BEND_PX 1.f
 /* The part of its contrast that must be left, in the mean over the pieces. Dotted cracks keep .8,
@@ -76,8 +77,10 @@ static bool goes_on(const frame *f, float outwards, float x, float y, const rc_p
       if (!rc_profile_mean(&f->ruler, x - f->ruler.uy * across, y + f->ruler.ux * across,
                            outwards * from, outwards, GOES_ON_PX, &here))
         continue;
-      float likeness = rc_profile_dot(&here, own) / sqrtf(square * rc_profile_dot(&here, &here));
-      known = true, most = fmaxf(most, likeness); /* fmaxf: an even window has no likeness */
+      float contrast = rc_profile_dot(&here, &here);
+      known = true;
+      if (contrast > LEAST_OF_CONTRAST * square)
+        most = fmaxf(most, rc_profile_dot(&here, own) / sqrtf(square * contrast));
     }
     if (known && most < LEAST_GOING_ON) return false;
   }

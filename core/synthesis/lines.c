@@ -254,15 +254,19 @@ static void keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES
   *count = kept;
 }
 
-/* Keeps what can be continued, in px of the finest level. The first must go on by itself, and then
- * vouches for those parallel to it. */
+/* Keeps what can be continued, in px of the finest level. One must go on by itself, and vouches for
+ * those parallel to it. */
 static void follow(const finder *f, const rc_chart *chart, int exponent,
                    rc_crossing lines[RC_MOST_LINES], int *count) {
   int kept = 0;
-  for (int i = 0; i < *count; i++) {
+  bool alone = true;
+  for (int i = 0; i < *count && alone; i++) {
     rc_crossing c = lines[i];
-    if (rc_follow(&f->picture, chart, kept == 0, &c))
-      lines[kept++] = rc_crossing_coarser(c, -exponent);
+    alone = !rc_follow(&f->picture, chart, true, &c);
+  }
+  for (int i = 0; i < *count && !alone; i++) {
+    rc_crossing c = lines[i];
+    if (rc_follow(&f->picture, chart, false, &c)) lines[kept++] = rc_crossing_coarser(c, -exponent);
   }
   *count = kept;
 }
