@@ -36,14 +36,20 @@ static void add(sums *s, const double terms[TERMS], const float *pixel, int chan
   }
 }
 
-static void gather(const rc_image *image, const rc_mask *flags, rc_tone *tone, sums *s) {
+static bool holds(const rc_band *band, int x, int y) {
+  double value = band->a * x + band->b * y + band->c;
+  return value >= band->least && value <= band->most;
+}
+
+static void gather(const rc_image *image, const rc_mask *flags, const rc_band *band, rc_tone *tone,
+                   sums *s) {
   double area = (double)image->width * image->height, terms[TERMS];
   int step = area > MOST_SAMPLES ? (int)ceil(sqrt(area / MOST_SAMPLES)) : 1;
   rc_box *box = &tone->box;
   *box = (rc_box){image->width, image->height, 0, 0};
   for (int y = 0; y < image->height; y += step)
     for (int x = 0; x < image->width; x += step) {
-      if (!(*rc_flag(flags, x, y) & RC_SOURCE)) continue;
+      if (!(*rc_flag(flags, x, y) & RC_SOURCE) || (band && !holds(band, x, y))) continue;
       if (x < box->x0) box->x0 = x;
       if (x >= box->x1) box->x1 = x + 1;
       if (y < box->y0) box->y0 = y;
@@ -89,14 +95,16 @@ static double explained(const rc_tone *tone, const sums *s, double count) {
   return s->square > mean ? (fitted - mean) / (s->square - mean) : 0;
 }
 
-void rc_tone_fit(const rc_image *image, const rc_mask *flags, bool drift, rc_tone *tone) {
+void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *band, bool drift,
+                 rc_tone *tone) {
   sums s;
   memset(&s, 0, sizeof s);
   memset(tone, 0, sizeof *tone);
   tone->channels = image->channels;
   tone->middle_x = (image->width - 1) / 2., tone->middle_y = (image->height - 1) / 2.;
   tone->half_width = image->width / 2., tone->half_height = image->height / 2.;
-  gather(image, flags, tone, &s);
+  gather(image, flags, band, tone, &s);
+  if (!(s.product[0][0] > 0)) gather(image, flags, NULL, tone, &s);
   double count = s.product[0][0];
   if (!(count > 0)) return;
   if (drift && factor(s.product)) {

@@ -16,9 +16,16 @@ typedef struct rc_tone {
   int channels;
 } rc_tone;
 
-/* Least squares over the SOURCE pixels. The trend is used where it explains a good part of their
- * variance; else, and with drift false, the tone is their mean. */
-void rc_tone_fit(const rc_image *image, const rc_mask *flags, bool drift, rc_tone *tone);
+/* Pixels where least <= a x + b y + c <= most. */
+typedef struct rc_band {
+  double a, b, c, least, most;
+} rc_band;
+
+/* Least squares over the SOURCE pixels of the band, or where it holds none over all. The trend is
+ * used where it explains a good part of their variance; else, and with drift false, the tone is
+ * their mean. */
+void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *band, bool drift,
+                 rc_tone *tone);
 /* Adds sign * tone to the pixels with that flag. */
 recede_status rc_tone_apply(rc_context *context, const rc_tone *tone, const rc_mask *flags,
                             uint8_t flag, float sign, rc_image *image);

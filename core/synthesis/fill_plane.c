@@ -25,6 +25,9 @@
  * leans less than they do), stones 0 .. .1, an old pier's boards .15 .. .2. With nothing to lean
  * both maps are the same, and the raised one keeps to whole pixels but along lines. */
 #define LEAN_OF_RAISED .32
+/* The light's drift is that between sources of the hole's own scales and a little more. With the
+ * sky in it a road gets blue. */
+#define SCALES_OF_TONE 1.3
 /* Bytes span this many standard deviations to each side. */
 #define DEVIATIONS 4.f
 
@@ -35,6 +38,19 @@ static rc_chart chart_of(const rc_problem *problem, bool raised) {
   double square = line->a * line->a + line->b * line->b, excess = rc_w(line, x0, y0) - 1;
   if (square > 1e-16) x0 -= excess * line->a / square, y0 -= excess * line->b / square;
   return (rc_chart){(float)line->a, (float)line->b, (float)x0, (float)y0, raised};
+}
+
+static rc_band own_scales(const rc_problem *problem) {
+  const rc_line *line = &problem->line;
+  rc_band band = {line->a, line->b, line->c, INFINITY, 0};
+  for (int y = problem->target.y0; y < problem->target.y1; y++)
+    for (int x = problem->target.x0; x < problem->target.x1; x++) {
+      if (!(*rc_flag(&problem->flags, x, y) & RC_TARGET)) continue;
+      double w = rc_w(line, x, y);
+      band.least = fmin(band.least, w), band.most = fmax(band.most, w);
+    }
+  band.least /= SCALES_OF_TONE, band.most *= SCALES_OF_TONE;
+  return band;
 }
 
 /* Twice the largest distance of a target pixel from its border. */
@@ -167,7 +183,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     return rc_fail(context, RECEDE_ARGUMENT, "This machine has no kernel %d.",
                    context->host.kernel);
   RC_TRY(rc_stage(context, "tone", .05, .07));
-  rc_tone_fit(filled, &problem->flags, params->engine_tone, &tone);
+  rc_band band = own_scales(problem);
+  rc_tone_fit(filled, &problem->flags, &band, params->engine_tone, &tone);
   RC_TRY(rc_tone_apply(context, &tone, &problem->flags, RC_KNOWN, -1, filled));
   RC_TRY(rc_stage(context, "pyramid", .07, .1));
   RC_TRY(build_pyramid(context, problem, filled, &e));
