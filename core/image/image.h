@@ -29,6 +29,10 @@ recede_status rc_mask_new(rc_context *context, int width, int height, rc_mask *m
 static inline float *rc_pixel(const rc_image *image, int x, int y) {
   return image->data + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;
 }
+static inline float rc_brightness_at(const rc_image *image, int x, int y) {
+  const float *v = rc_pixel(image, x, y);
+  return image->channels == 1 ? v[0] : .3f * v[0] + .59f * v[1] + .11f * v[2];
+}
 static inline uint8_t *rc_flag(const rc_mask *mask, int x, int y) {
   return mask->data + (size_t)y * (size_t)mask->width + (size_t)x;
 }

@@ -36,11 +36,6 @@ static void add(sums *s, const double terms[TERMS], const float *pixel, int chan
   }
 }
 
-static bool holds(const rc_band *band, int x, int y) {
-  double value = band->a * x + band->b * y + band->c;
-  return value >= band->least && value <= band->most;
-}
-
 static void gather(const rc_image *image, const rc_mask *flags, const rc_band *band, rc_tone *tone,
                    sums *s) {
   double area = (double)image->width * image->height, terms[TERMS];
@@ -49,7 +44,7 @@ static void gather(const rc_image *image, const rc_mask *flags, const rc_band *b
   *box = (rc_box){image->width, image->height, 0, 0};
   for (int y = 0; y < image->height; y += step)
     for (int x = 0; x < image->width; x += step) {
-      if (!(*rc_flag(flags, x, y) & RC_SOURCE) || (band && !holds(band, x, y))) continue;
+      if (!(*rc_flag(flags, x, y) & RC_SOURCE) || (band && !rc_band_holds(band, x, y))) continue;
       if (x < box->x0) box->x0 = x;
       if (x >= box->x1) box->x1 = x + 1;
       if (y < box->y0) box->y0 = y;

@@ -4,6 +4,7 @@
 #define RECEDE_IMAGE_TONE_H
 
 #include "image/image.h"
+#include "image/line.h"
 
 #define RC_TONE_TERMS 6 /* 1, x, y, x^2, x y, y^2 */
 
@@ -15,11 +16,6 @@ typedef struct rc_tone {
   double middle_x, middle_y, half_width, half_height;
   int channels;
 } rc_tone;
-
-/* Pixels where least <= a x + b y + c <= most. */
-typedef struct rc_band {
-  double a, b, c, least, most;
-} rc_band;
 
 /* Least squares over the SOURCE pixels of the band, or where it holds none over all. The trend is
  * used where it explains a good part of their variance; else, and with drift false, the tone is

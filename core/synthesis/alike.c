@@ -22,8 +22,6 @@
 #define TIMES_OWN 2.
 #define OWN_PERCENTILE 90
 #define LEAST_UNLIKE .3
-/* The hole's pixels in sources that must be left. */
-#define ENOUGH_SOURCE 3
 /* Of larger levels only every n-th pixel is compared: thin holes have no coarse one. */
 #define MOST_COMPARED (1 << 16)
 
@@ -64,7 +62,7 @@ static sums pixel_sums(const comparison *c, int x, int y) {
   bool grey = c->image->channels == 1;
   s.known = 1;
   for (int k = 0; k < 3; k++) s.colour[k] = v[grey ? 0 : k];
-  s.bright = .3 * s.colour[0] + .59 * s.colour[1] + .11 * s.colour[2];
+  s.bright = rc_brightness_at(c->image, x, y);
   s.square = s.bright * s.bright;
   return s;
 }
@@ -181,52 +179,37 @@ static bool is_unlike(const comparison *c, int x, int y) {
   return c->unlike[(size_t)(y / c->step) * (size_t)c->columns + (size_t)(x / c->step)];
 }
 
-/* How many sources there are, and of those at the hole's own scales how many have room for a patch;
- * all: with what is unlike. */
-typedef struct supply {
-  uint64_t sources, places;
-} supply;
-
-static recede_status take_stock(rc_context *context, const comparison *c, const rc_line *line,
-                                bool all, supply *stock) {
+/* Sources of the hole's own scales that have room for a patch; all: also those that are unlike. */
+static recede_status count_places(rc_context *context, const comparison *c, const rc_band *band,
+                                  bool all, uint64_t *places) {
   size_t pixels = (size_t)c->width * (size_t)c->height;
-  double least = INFINITY, most = 0;
   uint8_t *left, *room;
   rc_block *mark = rc_mark(context);
-  *stock = (supply){0, 0};
+  *places = 0;
   RC_TRY(RC_NEW(context, pixels, &left));
   RC_TRY(RC_NEW(context, pixels, &room));
-  for (int y = 0; y < c->height; y++)
-    for (int x = 0; x < c->width; x++) {
-      uint8_t flag = *rc_flag(c->flags, x, y);
-      size_t at = (size_t)y * (size_t)c->width + (size_t)x;
-      left[at] = flag & RC_SOURCE && (all || !is_unlike(c, x, y));
-      stock->sources += left[at];
-      if (!(flag & RC_TARGET)) continue;
-      least = fmin(least, rc_w(line, x, y)), most = fmax(most, rc_w(line, x, y));
-    }
+  for (size_t i = 0; i < pixels; i++) {
+    int x = (int)(i % (size_t)c->width), y = (int)(i / (size_t)c->width);
+    left[i] = c->flags->data[i] & RC_SOURCE && (all || !is_unlike(c, x, y));
+  }
   rc_distance_inside(left, 1, c->width, c->height, true, room);
-  for (int y = 0; y < c->height; y++)
-    for (int x = 0; x < c->width; x++) {
-      double w = rc_w(line, x, y);
-      size_t at = (size_t)y * (size_t)c->width + (size_t)x;
-      stock->places += room[at] > RC_PATCH_RADIUS + 1 && w >= least && w <= most;
-    }
+  for (size_t i = 0; i < pixels; i++)
+    *places += room[i] > RC_PATCH_RADIUS + 1 &&
+               rc_band_holds(band, (double)(i % (size_t)c->width), (double)(i / (size_t)c->width));
   rc_release(context, mark);
   return rc_poll(context);
 }
 
-/* Half of the places are enough in any case: a hole as wide as its texture never has many. */
-static recede_status enough_left(rc_context *context, const comparison *c, const rc_line *line,
+/* As many as the hole has pixels, or half of what there is: a hole as wide as its texture never has
+ * many. */
+static recede_status enough_left(rc_context *context, const comparison *c, const rc_band *band,
                                  bool *enough) {
-  uint64_t target = 0;
-  supply before, after;
+  uint64_t target = 0, before, after;
   for (size_t i = 0; i < (size_t)c->width * (size_t)c->height; i++)
     target += c->flags->data[i] & RC_TARGET ? 1 : 0;
-  RC_TRY(take_stock(context, c, line, true, &before));
-  RC_TRY(take_stock(context, c, line, false, &after));
-  *enough = after.sources >= ENOUGH_SOURCE * target &&
-            (after.places >= target || 2 * after.places >= before.places);
+  RC_TRY(count_places(context, c, band, true, &before));
+  RC_TRY(count_places(context, c, band, false, &after));
+  *enough = after >= target || 2 * after >= before;
   return RECEDE_OK;
 }
 
@@ -236,12 +219,10 @@ static void take_source(const comparison *c, const rc_mask *flags, int shift) {
       if (is_unlike(c, x >> shift, y >> shift)) *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
 }
 
-recede_status rc_keep_alike(rc_context *context, const rc_line *line, const rc_image *images,
+recede_status rc_keep_alike(rc_context *context, const rc_band *band, const rc_image *images,
                             const rc_mask *flags, int levels) {
   const rc_image *image = &images[levels - 1];
-  double unit = 1 << (levels - 1);
-  /* w at the level's pixel (x, y), whose middle is (x + .5) unit - .5 */
-  rc_line here = {line->a * unit, line->b * unit, line->c + (line->a + line->b) * (.5 * unit - .5)};
+  rc_band here = *band;
   comparison c = {.image = image,
                   .flags = &flags[levels - 1],
                   .width = image->width,
@@ -252,6 +233,7 @@ recede_status rc_keep_alike(rc_context *context, const rc_line *line, const rc_i
   float *nearest;
   bool enough;
   rc_block *mark = rc_mark(context);
+  for (int i = 1; i < levels; i++) here.w = rc_line_halved(&here.w);
   RC_TRY(RC_NEW(context, MOST_SAMPLES, &c.sample));
   RC_TRY(RC_NEW(context, MOST_SAMPLES, &c.sample_at));
   RC_TRY(RC_NEW(context, MOST_SAMPLES, &nearest));

@@ -4,12 +4,14 @@
 #ifndef RECEDE_SYNTHESIS_ALIKE_H
 #define RECEDE_SYNTHESIS_ALIKE_H
 
-#include "synthesis/problem.h"
+#include "image/image.h"
+#include "image/line.h"
 
-/* Takes RC_SOURCE from pixels that look like nothing beside the hole. line: of the finest level;
- * images and flags: the pyramid's levels, finest first; what is unlike is found at the coarsest.
- * All stay where too little would be left, or where too little beside the hole is source. */
-recede_status rc_keep_alike(rc_context *context, const rc_line *line, const rc_image *images,
+/* Takes RC_SOURCE from pixels that look like nothing beside the hole. band: where the hole's own
+ * scales are, of the finest level; images and flags: the pyramid's levels, finest first; what is
+ * unlike is found at the coarsest. All stay where too few of the hole's own scales would be left, or
+ * where too little beside the hole is source. */
+recede_status rc_keep_alike(rc_context *context, const rc_band *band, const rc_image *images,
                             const rc_mask *flags, int levels);
 
 #endif

@@ -27,7 +27,7 @@
 #define LEAN_OF_RAISED .32
 /* The light's drift is that between sources of the hole's own scales and a little more. With the
  * sky in it a road gets blue. */
-#define SCALES_OF_TONE 1.3
+#define SCALES_BESIDE 1.3
 /* Bytes span this many standard deviations to each side. */
 #define DEVIATIONS 4.f
 
@@ -42,14 +42,14 @@ static rc_chart chart_of(const rc_problem *problem, bool raised) {
 
 static rc_band own_scales(const rc_problem *problem) {
   const rc_line *line = &problem->line;
-  rc_band band = {line->a, line->b, line->c, INFINITY, 0};
+  rc_band band = {*line, INFINITY, 0};
   for (int y = problem->target.y0; y < problem->target.y1; y++)
     for (int x = problem->target.x0; x < problem->target.x1; x++) {
       if (!(*rc_flag(&problem->flags, x, y) & RC_TARGET)) continue;
       double w = rc_w(line, x, y);
       band.least = fmin(band.least, w), band.most = fmax(band.most, w);
     }
-  band.least /= SCALES_OF_TONE, band.most *= SCALES_OF_TONE;
+  band.least /= SCALES_BESIDE, band.most *= SCALES_BESIDE;
   return band;
 }
 
@@ -189,8 +189,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(rc_stage(context, "pyramid", .07, .1));
   RC_TRY(build_pyramid(context, problem, filled, &e));
   RC_TRY(choose_surface(context, problem, &e, &raised));
-  if (params->engine_alike && !problem->chosen)
-    RC_TRY(rc_keep_alike(context, &problem->line, e.images, e.flags, e.level_count));
+  if (params->engine_alike && !problem->synthesis)
+    RC_TRY(rc_keep_alike(context, &band, e.images, e.flags, e.level_count));
   e.gain = byte_gain(filled, &problem->flags);
   /* Again, for it is the texture's that counts; what is alike may be too little to tell. */
   RC_TRY(choose_surface(context, problem, &e, &raised));

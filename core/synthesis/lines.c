@@ -287,11 +287,8 @@ static int collect_border(const rc_mask *flags, int32_t *border) {
 }
 
 static void set_brightness(const rc_image *image, float *value) {
-  size_t count = (size_t)image->width * (size_t)image->height;
-  for (size_t i = 0; i < count; i++)
-    value[i] = image->channels == 1 ? image->data[i]
-                                    : .3f * image->data[3 * i] + .59f * image->data[3 * i + 1] +
-                                          .11f * image->data[3 * i + 2];
+  for (int y = 0; y < image->height; y++)
+    for (int x = 0; x < image->width; x++) *value++ = rc_brightness_at(image, x, y);
 }
 
 static void set_directions(float (*direction)[2]) {

@@ -3,25 +3,18 @@
 #define RECEDE_SYNTHESIS_PROBLEM_H
 
 #include "image/image.h"
-
-/* w(x, y) = a x + b y + c in the problem's own coordinates: 1 at the target's centroid,
- * proportional to 1 / depth, 0 on the horizon. All that matters for copying within the plane. */
-typedef struct rc_line {
-  double a, b, c;
-} rc_line;
-static inline double rc_w(const rc_line *line, double x, double y) {
-  return line->a * x + line->b * y + line->c;
-}
+#include "image/line.h"
 
 typedef struct rc_problem {
   rc_image image; /* the part of the picture that matters; 0 where not KNOWN */
   rc_mask flags;  /* RC_TARGET, RC_KNOWN, RC_SOURCE */
   rc_box target;  /* bounding box of the TARGET pixels */
-  rc_line line;
+  rc_line line; /* w: 1 at the target's centroid, proportional to 1 / depth, 0 on the horizon; all
+                   that matters for copying within the plane */
   recede_plane plane;         /* of the whole picture */
   int origin_x, origin_y;     /* of image in the whole picture */
   int exemplar_x, exemplar_y; /* synthesis: exemplar's pixel at image's (0, 0) */
-  bool chosen;                /* synthesis: all of the exemplar is wanted */
+  bool synthesis;             /* all of the exemplar is wanted */
 } rc_problem;
 
 /* Each fills the TARGET pixels of *filled, which starts as problem->image (for method plane it IS

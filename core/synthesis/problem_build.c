@@ -212,7 +212,7 @@ recede_status rc_problem_of_synthesis(rc_context *context, const rc_views *exemp
   int colours = channels < 3 ? 1 : 3, x0 = (width - middle.width) / 2,
       y0 = (height - middle.height) / 2;
   *problem = (rc_problem){
-      .plane = *plane, .exemplar_x = cut_x - x0, .exemplar_y = cut_y - y0, .chosen = true};
+      .plane = *plane, .exemplar_x = cut_x - x0, .exemplar_y = cut_y - y0, .synthesis = true};
   RC_TRY(rc_image_new(context, width, height, colours, &problem->image));
   RC_TRY(rc_mask_new(context, width, height, &problem->flags));
   rc_block *mark = rc_mark(context);

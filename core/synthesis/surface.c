@@ -34,11 +34,6 @@ static frame frame_of(const recede_plane *plane) {
   return (frame){-dy, dx, dx, dy, sine / plane->focal_px};
 }
 
-static float brightness(const rc_image *image, int x, int y) {
-  const float *v = rc_pixel(image, x, y);
-  return image->channels == 1 ? v[0] : .3f * v[0] + .59f * v[1] + .11f * v[2];
-}
-
 static bool all_source(const rc_mask *flags, int x, int y) {
   return (*rc_flag(flags, x, y) & *rc_flag(flags, x - 1, y) & *rc_flag(flags, x + 1, y) &
           *rc_flag(flags, x, y - 1) & *rc_flag(flags, x, y + 1) & RC_SOURCE) != 0;
@@ -49,8 +44,8 @@ static void gather(const rc_image *image, const rc_mask *flags, const frame *f, 
   for (int y = y0 < 1 ? 1 : y0; y < y0 + CELL_PX && y + 1 < image->height; y++)
     for (int x = x0 < 1 ? 1 : x0; x < x0 + CELL_PX && x + 1 < image->width; x++) {
       if (!all_source(flags, x, y)) continue;
-      double gx = brightness(image, x + 1, y) - brightness(image, x - 1, y);
-      double gy = brightness(image, x, y + 1) - brightness(image, x, y - 1);
+      double gx = rc_brightness_at(image, x + 1, y) - rc_brightness_at(image, x - 1, y);
+      double gy = rc_brightness_at(image, x, y + 1) - rc_brightness_at(image, x, y - 1);
       double p = gx * f->across_x + gy * f->across_y, q = gx * f->along_x + gy * f->along_y;
       c->pp += p * p, c->pq += p * q, c->pixels++;
     }

@@ -25,7 +25,7 @@ typedef struct run {
 } run;
 
 static recede_status halve(run *r, const rc_side *fine, rc_side *coarse) {
-  coarse->scale = rc_scale_halved(&fine->scale);
+  coarse->scale = rc_line_halved(&fine->scale);
   return rc_half(r->context, &fine->image, &fine->flags, &coarse->image, &coarse->flags);
 }
 

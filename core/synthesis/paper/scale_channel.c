@@ -16,7 +16,3 @@ rc_line rc_scale_resampled(const rc_line *scale, int width, int height, int new_
 rc_line rc_scale_moved(const rc_line *scale, int x, int y) {
   return (rc_line){scale->a, scale->b, rc_w(scale, x, y)};
 }
-
-rc_line rc_scale_halved(const rc_line *scale) {
-  return (rc_line){2 * scale->a, 2 * scale->b, rc_w(scale, .5, .5)};
-}

@@ -17,8 +17,6 @@ rc_line rc_scale_resampled(const rc_line *scale, int width, int height, int new_
                            int new_height);
 /* The map of the picture moved so that (x, y) becomes (0, 0). */
 rc_line rc_scale_moved(const rc_line *scale, int x, int y);
-/* The next coarser pyramid level's: its pixel (x, y) lies at (2x + 1/2, 2y + 1/2). */
-rc_line rc_scale_halved(const rc_line *scale);
 
 /* Scale is positive on the plane; known pixels near and beyond the horizon share this value. */
 #define RC_LEAST_SCALE .01f
