@@ -18,11 +18,18 @@
 #define PRICE_OF_BROKEN_LINES .3
 #define FAVOUR_OF_LINES 1.3
 #define FAVOUR_IN_LATTICE 1.2
+/* Moves along the rails are from so many px to so many; and so many target pixels may find nothing
+ * along them: they go on from what lies beside them. */
+#define LEAST_MOVE_PX 6
+#define MOST_MOVE_PX 1000
+#define MOST_WITHOUT_COPY .02
 
-/* Some of all trials: starts by patches first, then those of few whole copies. */
+/* Some of all trials: starts by patches first, then those of few whole copies, which are these
+ * moves or, where there are none, chance ones. */
 typedef struct starts {
   int first, first_whole, end;
-  bool lattice;
+  const rc_copy *moves;
+  int move_count;
 } starts;
 
 static recede_status start_once(rc_context *context, const rc_descent *e, const starts *s,
@@ -34,7 +41,8 @@ static recede_status start_once(rc_context *context, const rc_descent *e, const 
                       .period_count = e->period_count,
                       .anywhere = rc_effort_of(e)->start_tries};
   if (trial < s->first_whole) return rc_start(context, level, &search);
-  return rc_start_whole(context, level, &search, s->lattice, copies[(trial - s->first_whole) % 3]);
+  return rc_start_whole(context, level, search.key, s->moves, s->move_count,
+                        copies[(trial - s->first_whole) % 3]);
 }
 
 /* All trials get a third of their iterations, the better half of them the rest. Of two both get
@@ -79,55 +87,110 @@ static recede_status try_starts(rc_context *context, const rc_descent *e, const 
   return RECEDE_OK;
 }
 
+/* Of a trial, which the level then holds. */
 static double price_of_broken_lines(const rc_descent *e, rc_level *level, const rc_trial *trial) {
   rc_trial_restore(level, trial);
   return PRICE_OF_BROKEN_LINES *
          (1 - rc_lines_kept(level, e->lines, e->line_count, e->level_count - 1));
 }
 
-/* The coarsest level: starts it several times and keeps the best, then up to half as often again
- * with the lines continued. */
+static bool nearly_all_have_copies(const rc_level *level) {
+  int targets = 0, without = 0;
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      if (!rc_level_is_target(level, x, y)) continue;
+      targets++;
+      without += isnan(level->field[rc_level_at(level, x, y)].a);
+    }
+  return without <= MOST_WITHOUT_COPY * targets;
+}
+
+static recede_status moves_along(rc_context *context, const rc_descent *e, const rc_level *level,
+                                 const rc_copy **moves, int *count) {
+  rc_copy *made;
+  int most = level->width + level->height;
+  if (most > MOST_MOVE_PX) most = MOST_MOVE_PX;
+  *count = 0;
+  RC_TRY(RC_NEW(context, 2 * most, &made));
+  for (int px = LEAST_MOVE_PX; px <= most; px++)
+    for (int sign = -1; sign <= 1; sign += 2) {
+      float by = (float)(sign * px);
+      made[(*count)++] = rc_copy_of_move(&level->chart, 0.f, 0.f, by * e->rails.a, by * e->rails.b);
+    }
+  *moves = made;
+  return RECEDE_OK;
+}
+
+/* Starts that keep to the rails, from the trial first on. misfit: of the best so far. */
+static recede_status try_rails(rc_context *context, rc_descent *e, int first, int count, rc_pace *p,
+                               rc_level *level, rc_workspace *scratch, double misfit) {
+  starts s = {first, first, first + count, NULL, 0};
+  rc_trial best;
+  double own;
+  RC_TRY(rc_trial_new(context, level, &best));
+  RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
+  e->on_rails = true;
+  RC_TRY(try_starts(context, e, &s, p, level, scratch, &best, &own));
+  own += price_of_broken_lines(e, level, &best);
+  e->on_rails = own < FAVOUR_OF_LINES * misfit && nearly_all_have_copies(level);
+  return RECEDE_OK;
+}
+
+/* Starts with the lines locked. */
+static recede_status try_lines(rc_context *context, rc_descent *e, const starts *s, rc_pace *p,
+                               rc_level *level, rc_workspace *scratch, double misfit,
+                               double favour) {
+  rc_trial best;
+  double own;
+  RC_TRY(rc_trial_new(context, level, &best));
+  RC_TRY(rc_lines_lock(context, e->lines, e->line_count, e->level_count - 1, level));
+  RC_TRY(try_starts(context, e, s, p, level, scratch, &best, &own));
+  own += price_of_broken_lines(e, level, &best);
+  e->continue_lines = own < favour * misfit;
+  if (!e->continue_lines) RC_FREE(context, &level->locked);
+  return RECEDE_OK;
+}
+
 recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *level,
                               rc_workspace *scratch) {
   int exponent = e->level_count - 1, wanted = e->params->engine_starts;
   int plain = rc_trials_worth(level, wanted ? wanted : rc_effort_of(e)->starts);
+  int half = (plain + 1) / 2, iterations = rc_iterations_at(e, exponent);
   uint64_t key = rc_key((uint64_t)e->params->seed, 99, 0);
-  double misfit, misfit_with_lines;
-  rc_trial best, with_lines;
-  bool lattice = false;
+  bool lattice = false, runs = rc_runs(&e->rails);
+  double misfit;
+  rc_trial best;
   if (e->params->engine_periods)
     RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count, &lattice));
-  if (e->params->engine_lines)
-    RC_TRY(rc_lines_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
-                         &e->line_count));
-  int trials = plain + (e->line_count == 0 ? 0 : lattice ? 1 : (plain + 1) / 2);
+  /* Boards are alike all along: what repeats there is chance. */
+  lattice = lattice && !runs;
   /* Where lines cross the hole there are things that go on as a whole: boards, courses of tiles.
    * But whole copies that break lines fit well, and must not win over those that continue them; a
    * lattice's periods break none. */
   bool whole = e->params->engine_whole && e->line_count > 0;
-  starts by_chance = {0, whole && lattice ? plain - plain / 2 : plain, plain, lattice};
-  starts along_lines = {plain, whole ? trials - (trials - plain) / 2 : trials, trials, lattice};
-  int iterations = rc_iterations_at(e, exponent);
+  int with_lines = e->line_count == 0 ? 0 : lattice ? 1 : half, on_rails = runs ? half : 0;
+  int trials = plain + with_lines;
+  starts by_chance = {0, whole && lattice ? plain - plain / 2 : plain, plain, NULL, 0};
+  starts along_lines = {plain, whole ? trials - with_lines / 2 : trials, trials, NULL, 0};
+  if (lattice && !level->chart.raised) {
+    by_chance.moves = along_lines.moves = e->periods;
+    by_chance.move_count = along_lines.move_count = e->period_count;
+  }
   if (trials == 1) {
     rc_pace p = {0, iterations};
     RC_TRY(start_once(context, e, &by_chance, 0, level));
     return rc_iterate(context, e, exponent, 0, 0, iterations, &p, level, scratch);
   }
-  rc_pace p = {0, work_of(plain, iterations) + work_of(trials - plain, iterations)};
+  rc_pace p = {0, work_of(plain, iterations) + work_of(with_lines, iterations) +
+                      work_of(on_rails, iterations)};
   RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(try_starts(context, e, &by_chance, &p, level, scratch, &best, &misfit));
-  if (e->line_count) {
-    misfit += price_of_broken_lines(e, level, &best);
-    RC_TRY(rc_trial_new(context, level, &with_lines));
-    RC_TRY(rc_lines_lock(context, e->lines, e->line_count, exponent, level));
-    RC_TRY(
-        try_starts(context, e, &along_lines, &p, level, scratch, &with_lines, &misfit_with_lines));
-    misfit_with_lines += price_of_broken_lines(e, level, &with_lines);
+  if (e->line_count) misfit += price_of_broken_lines(e, level, &best);
+  if (runs) RC_TRY(try_rails(context, e, trials, on_rails, &p, level, scratch, misfit));
+  if (e->line_count && !e->on_rails) {
     double favour = lattice ? FAVOUR_IN_LATTICE : FAVOUR_OF_LINES;
-    e->continue_lines = misfit_with_lines < favour * misfit;
-    if (e->continue_lines) return RECEDE_OK;
-    RC_FREE(context, &level->locked);
+    RC_TRY(try_lines(context, e, &along_lines, &p, level, scratch, misfit, favour));
   }
-  rc_trial_restore(level, &best);
+  if (!e->on_rails && !e->continue_lines) rc_trial_restore(level, &best);
   return RECEDE_OK;
 }

@@ -4,7 +4,7 @@
 
 #include "synthesis/iterate.h"
 
-/* Finds periods and lines, which *e keeps, and fills the level. */
+/* Finds periods, which *e keeps, and fills the level. */
 recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *level,
                               rc_workspace *scratch);
 

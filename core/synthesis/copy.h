@@ -105,6 +105,15 @@ static inline rc_copy rc_copy_between(const rc_chart *chart, float x, float y, f
   return (rc_copy){to_x - r * x, to_y - r * y, r};
 }
 
+/* The same without steps of scale or whole pixels: for lines, that would get steps by them. A
+ * raised copy of this scale keeps each line through the vanishing point of the move where it is. */
+static inline rc_copy rc_copy_exact(const rc_chart *chart, float x, float y, float to_x,
+                                    float to_y) {
+  if (!chart->raised) return rc_copy_between(chart, x, y, to_x, to_y);
+  float r = (1.f + chart->lx * to_x + chart->ly * to_y) / (1.f + chart->lx * x + chart->ly * y);
+  return (rc_copy){to_x - r * x, to_y - r * y, r};
+}
+
 /* The same copy one pyramid level finer. */
 static inline rc_copy rc_copy_finer(rc_copy copy) {
   return (rc_copy){2.f * copy.a, 2.f * copy.b, copy.r};

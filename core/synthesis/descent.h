@@ -5,6 +5,7 @@
 #include "synthesis/level.h"
 #include "synthesis/lines.h"
 #include "synthesis/periods.h"
+#include "synthesis/rails.h"
 
 #define RC_MAX_LEVELS 10
 
@@ -20,8 +21,9 @@ typedef struct rc_descent {
   int period_count;
   rc_crossing lines[RC_MOST_LINES]; /* px of the finest level */
   int line_count;
-  bool continue_lines; /* starts that did fitted better */
-  uint64_t rest;       /* out: pixels that only continue what lies beside them */
+  rc_rails rails;
+  bool on_rails, continue_lines; /* starts that kept to them fitted better */
+  uint64_t rest;                 /* out: pixels that only continue what lies beside them */
 } rc_descent;
 
 /* Makes the finest level, its field settled into whole copies. Progress .1 .. .8. */

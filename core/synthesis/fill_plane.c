@@ -118,6 +118,16 @@ static recede_status choose_surface(rc_context *context, const rc_problem *probl
   return RECEDE_OK;
 }
 
+/* Lines that cross the hole, and whether the texture runs along them. */
+static recede_status find_lines(rc_context *context, rc_descent *e) {
+  if (!e->params->engine_lines) return RECEDE_OK;
+  RC_TRY(rc_lines_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
+                       &e->line_count));
+  if (!e->params->engine_rails) return RECEDE_OK;
+  return rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
+                       e->line_count, &e->rails);
+}
+
 static void count_magnified(rc_context *context, const rc_descent *e, const rc_level *level) {
   recede_report *report = &context->report;
   uint64_t missing = 0;
@@ -195,6 +205,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   /* Again, for it is the texture's that counts; what is alike may be too little to tell. */
   RC_TRY(choose_surface(context, problem, &e, &raised));
   e.chart = chart_of(problem, raised);
+  RC_TRY(find_lines(context, &e));
   context->report.surface = raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;
   RC_TRY(rc_descend(context, &e, &finest));
   RC_TRY(rc_stage(context, "composition", .8, .93));

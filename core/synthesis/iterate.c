@@ -10,6 +10,8 @@
 #define COHERENCE_OF_COMPOSITION .06f
 #define PERIOD_TRIES 3
 #define PASSES 2
+/* Boards are a little bent; but what the coarsest level is off by the finest is many times. */
+#define RAIL_TOLERANCE_PX .25f
 
 static const rc_effort efforts[] = {
     [RECEDE_QUALITY_DRAFT] = {2, 30, 6, 2, 0, 2, 8},
@@ -50,8 +52,10 @@ static rc_search search_of(const rc_descent *e, int exponent, int trial, int ite
                      .local_radius = rc_effort_of(e)->local_radius,
                      .anywhere = coarsest ? rc_effort_of(e)->anywhere : 0,
                      .periods = e->periods,
-                     .period_count = coarsest ? e->period_count : 0,
-                     .period_tries = PERIOD_TRIES};
+                     .period_count = coarsest && !e->on_rails ? e->period_count : 0,
+                     .period_tries = PERIOD_TRIES,
+                     .rails = e->on_rails ? &e->rails : NULL,
+                     .rail_tolerance = coarsest ? 0.f : RAIL_TOLERANCE_PX};
 }
 
 recede_status rc_iterate(rc_context *context, const rc_descent *e, int exponent, int trial,

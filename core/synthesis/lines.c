@@ -219,8 +219,7 @@ static void pair_up(const finder *f, rc_crossing lines[RC_MOST_LINES], int *coun
   }
 }
 
-/* A line's direction in the plane. */
-static rc_copy direction_of(const rc_chart *chart, const rc_crossing *c) {
+rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *c) {
   rc_chart flat = *chart;
   flat.raised = false;
   rc_copy d =
@@ -231,7 +230,7 @@ static rc_copy direction_of(const rc_chart *chart, const rc_crossing *c) {
 
 static bool parallel(rc_copy p, rc_copy q) { return fabsf(p.a * q.a + p.b * q.b) > PARALLEL; }
 
-static float length_of(const rc_crossing *c) {
+float rc_crossing_length(const rc_crossing *c) {
   float dx = c->bx - c->ax, dy = c->by - c->ay;
   return sqrtf(dx * dx + dy * dy);
 }
@@ -242,11 +241,11 @@ static void keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES
   rc_copy directions[RC_MOST_LINES];
   float most = 0;
   int leading = -1, kept = 0;
-  for (int i = 0; i < *count; i++) directions[i] = direction_of(chart, &lines[i]);
+  for (int i = 0; i < *count; i++) directions[i] = rc_crossing_direction(chart, &lines[i]);
   for (int i = 0; i < *count && lines[i].strength >= LEAST_LEADING_STRENGTH; i++) {
     float sum = 0;
     for (int k = 0; k < *count; k++)
-      if (parallel(directions[i], directions[k])) sum += length_of(&lines[k]);
+      if (parallel(directions[i], directions[k])) sum += rc_crossing_length(&lines[k]);
     if (sum > most) most = sum, leading = i;
   }
   for (int i = 0; i < *count && leading >= 0; i++)

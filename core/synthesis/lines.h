@@ -16,8 +16,11 @@ typedef struct rc_crossing {
   float from_x[RC_LINE_PIECES], from_y[RC_LINE_PIECES]; /* where each piece's middle comes from */
 } rc_crossing;
 
+float rc_crossing_length(const rc_crossing *line);
 /* Distance of (x, y) from the line, however far beyond its ends. */
 float rc_crossing_distance(const rc_crossing *line, float x, float y);
+/* Its direction in the plane, a unit vector. chart: of the same level. */
+rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *line);
 /* The same line in px of a level 2^exponent times coarser; a negative exponent: finer. */
 rc_crossing rc_crossing_coarser(rc_crossing line, int exponent);
 /* Parallel lines of the plane that cross the hole and can be continued, strongest first. images and

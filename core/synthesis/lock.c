@@ -10,13 +10,6 @@
 #define LOCKED_PX 5.f
 #define LEAST_LOCKED_PX 1.f
 
-/* A raised copy would move by whole pixels; a line that leans would get steps by that. */
-static rc_copy exact_copy(const rc_chart *chart, float x, float y, float to_x, float to_y) {
-  rc_copy copy = rc_copy_between(chart, x, y, to_x, to_y);
-  if (chart->raised) copy.a = to_x - copy.r * x, copy.b = to_y - copy.r * y;
-  return copy;
-}
-
 static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
   const rc_chart *chart = &level->chart;
   float unit = (float)(1 << exponent), reach = fmaxf(LOCKED_PX / unit, LEAST_LOCKED_PX);
@@ -25,8 +18,8 @@ static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
   float dx = c.bx - c.ax, dy = c.by - c.ay, square = dx * dx + dy * dy;
   for (int k = 0; k < RC_LINE_PIECES; k++) {
     float t = ((float)k + .5f) / RC_LINE_PIECES;
-    copies[k] = exact_copy(chart, c.ax + t * dx - chart->x0, c.ay + t * dy - chart->y0,
-                           c.from_x[k] - chart->x0, c.from_y[k] - chart->y0);
+    copies[k] = rc_copy_exact(chart, c.ax + t * dx - chart->x0, c.ay + t * dy - chart->y0,
+                              c.from_x[k] - chart->x0, c.from_y[k] - chart->y0);
   }
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {

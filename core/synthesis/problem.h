@@ -9,8 +9,8 @@ typedef struct rc_problem {
   rc_image image; /* the part of the picture that matters; 0 where not KNOWN */
   rc_mask flags;  /* RC_TARGET, RC_KNOWN, RC_SOURCE */
   rc_box target;  /* bounding box of the TARGET pixels */
-  rc_line line; /* w: 1 at the target's centroid, proportional to 1 / depth, 0 on the horizon; all
-                   that matters for copying within the plane */
+  rc_line line;   /* w: 1 at the target's centroid, proportional to 1 / depth, 0 on the horizon; all
+                     that matters for copying within the plane */
   recede_plane plane;         /* of the whole picture */
   int origin_x, origin_y;     /* of image in the whole picture */
   int exemplar_x, exemplar_y; /* synthesis: exemplar's pixel at image's (0, 0) */

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-static bool sample(const rc_ruler *ruler, float x, float y, float *value) {
+bool rc_ruler_sample(const rc_ruler *ruler, float x, float y, float *value) {
   int px = (int)floorf(x), py = (int)floorf(y);
   float v[4], fx = x - (float)px, fy = y - (float)py;
   for (int k = 0; k < 4; k++)
@@ -19,8 +19,8 @@ bool rc_profile_mean(const rc_ruler *ruler, float x, float y, float from, float 
     float sum = 0;
     for (int k = 0; k < count; k++) {
       float along = from + step * (float)k, across = (float)(o - RC_PROFILE_HALF), value;
-      if (!sample(ruler, x + ruler->ux * along - ruler->uy * across,
-                  y + ruler->uy * along + ruler->ux * across, &value))
+      if (!rc_ruler_sample(ruler, x + ruler->ux * along - ruler->uy * across,
+                           y + ruler->uy * along + ruler->ux * across, &value))
         continue;
       sum += value;
       found++;

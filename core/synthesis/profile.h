@@ -15,6 +15,9 @@ typedef struct rc_ruler {
   float ux, uy; /* the line's direction, a unit vector */
 } rc_ruler;
 
+/* The picture's brightness at (x, y), bilinear. False: not all of it can be seen. */
+bool rc_ruler_sample(const rc_ruler *ruler, float x, float y, float *value);
+
 typedef struct rc_profile {
   float mean[RC_PROFILE]; /* without their mean, */
   float tone;             /* which is this */

@@ -89,8 +89,13 @@ static void try_neighbours(const scan *s, pixel_state *state) {
   }
 }
 
-static rc_copy copy_from(const rc_level *level, const pixel_state *state, float x, float y) {
-  return rc_copy_between(&level->chart, state->query.x, state->query.y, x, y);
+static rc_copy copy_from(const scan *s, const pixel_state *state, float x, float y) {
+  const rc_search *search = s->search;
+  const rc_chart *chart = &s->level->chart;
+  const rc_query *query = &state->query;
+  return search->rails ? rc_copy_on_rails(search->rails, chart, search->rail_tolerance, query->x,
+                                          query->y, x, y)
+                       : rc_copy_between(chart, query->x, query->y, x, y);
 }
 
 static void try_nearby(const scan *s, pixel_state *state) {
@@ -104,7 +109,7 @@ static void try_nearby(const scan *s, pixel_state *state) {
     int dy = (int)rc_below((uint32_t)(bits >> 32), 2u * (uint32_t)radius + 1) - radius;
     float x = place.x + (float)dx, y = place.y + (float)dy;
     if (!(rc_level_w(level, x, y) > 0.f)) continue;
-    try_copy(s, state, copy_from(level, state, x, y), CHANCE_MUST_BEAT);
+    try_copy(s, state, copy_from(s, state, x, y), CHANCE_MUST_BEAT);
   }
 }
 
@@ -118,19 +123,20 @@ static void try_anywhere(const scan *s, pixel_state *state) {
     uint64_t bits =
         rc_random(s->search->key, (uint32_t)state->x, (uint32_t)state->y, 100u + (uint32_t)n);
     rc_level_random_source(level, sources, bits, &x, &y);
-    try_copy(s, state, copy_from(level, state, rc_level_x(level, x), rc_level_y(level, y)),
+    try_copy(s, state, copy_from(s, state, rc_level_x(level, x), rc_level_y(level, y)),
              CHANCE_MUST_BEAT);
   }
 }
 
-static rc_copy shifted_by_period(const rc_level *level, const pixel_state *state, rc_copy from,
+static rc_copy shifted_by_period(const scan *s, const pixel_state *state, rc_copy from,
                                  rc_copy period) {
+  const rc_level *level = s->level;
   if (!level->chart.raised) return (rc_copy){from.a + period.a, from.b + period.b, 0.f};
   rc_chart flat = level->chart;
   flat.raised = false;
   rc_place place = rc_query_place(level, &state->query, from);
   rc_place moved = rc_copy_place(&flat, period, place.x, place.y);
-  return moved.beyond ? from : copy_from(level, state, moved.x, moved.y);
+  return moved.beyond ? from : copy_from(s, state, moved.x, moved.y);
 }
 
 static void try_periods(const scan *s, pixel_state *state) {
@@ -141,7 +147,7 @@ static void try_periods(const scan *s, pixel_state *state) {
         rc_random(search->key, (uint32_t)state->x, (uint32_t)state->y, 200u + (uint32_t)n);
     rc_copy period = search->periods[rc_below((uint32_t)bits, (uint32_t)search->period_count)];
     rc_copy from = bits >> 63 ? state->best : still;
-    try_copy(s, state, shifted_by_period(s->level, state, from, period), CHANCE_MUST_BEAT);
+    try_copy(s, state, shifted_by_period(s, state, from, period), CHANCE_MUST_BEAT);
   }
 }
 

@@ -3,6 +3,7 @@
 #define RECEDE_SYNTHESIS_SEARCH_H
 
 #include "synthesis/evaluate.h"
+#include "synthesis/rails.h"
 
 typedef struct rc_search {
   const rc_kernels *kernels;
@@ -15,6 +16,9 @@ typedef struct rc_search {
   int anywhere;           /* random candidates from all sources of the right scale */
   const rc_copy *periods; /* candidates to add to the pixel's copy (flat) */
   int period_count, period_tries;
+  const rc_rails
+      *rails; /* candidates by chance keep to them, give or take so many px; NULL: free */
+  float rail_tolerance;
 } rc_search;
 
 /* One pass over the level's field. old is scratch of box_w * box_h. */

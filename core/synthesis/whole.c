@@ -173,13 +173,13 @@ static void draw(whole *w, uint64_t key) {
   }
 }
 
-static void take_periods(whole *w, const rc_copy *periods, int count) {
+static void take(whole *w, const rc_copy *moves, int count) {
   w->candidate_count = count < CANDIDATES ? count : CANDIDATES;
-  for (int n = 0; n < w->candidate_count; n++) w->candidates[n].copy = periods[n];
+  for (int n = 0; n < w->candidate_count; n++) w->candidates[n].copy = moves[n];
 }
 
-recede_status rc_start_whole(rc_context *context, rc_level *level, const rc_search *search,
-                             bool lattice, int copies) {
+recede_status rc_start_whole(rc_context *context, rc_level *level, uint64_t key,
+                             const rc_copy *moves, int move_count, int copies) {
   whole w = {.level = level};
   float *misfits;
   int step = collect_ring(level, 1, NULL) / MOST_RING + 1;
@@ -188,10 +188,10 @@ recede_status rc_start_whole(rc_context *context, rc_level *level, const rc_sear
   w.ring_count = collect_ring(level, step, w.ring);
   RC_TRY(RC_NEW(context, MOST_RING, &w.least));
   RC_TRY(RC_NEW(context, CANDIDATES, &w.candidates));
-  if (lattice && !level->chart.raised)
-    take_periods(&w, search->periods, search->period_count);
+  if (move_count)
+    take(&w, moves, move_count);
   else
-    draw(&w, search->key);
+    draw(&w, key);
   RC_TRY(RC_NEW(context, (size_t)w.candidate_count * (size_t)w.ring_count, &misfits));
   for (int n = 0; n < w.candidate_count; n++)
     w.candidates[n].misfit = misfits + (size_t)n * (size_t)w.ring_count;

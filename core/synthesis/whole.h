@@ -7,9 +7,9 @@
 #include "synthesis/search.h"
 
 /* Gives every target pixel that is not locked one of at most `copies` copies, and the guide its
- * colour; a = NAN where none of them has one. Costs are not known yet. The copies come from chance
- * sources, or in a lattice by search->periods alone: a chance one fits, but half a px off. */
-recede_status rc_start_whole(rc_context *context, rc_level *level, const rc_search *search,
-                             bool lattice, int copies);
+ * colour; a = NAN where none of them has one. Costs are not known yet. The copies come from
+ * moves, or where there are none from chance sources. */
+recede_status rc_start_whole(rc_context *context, rc_level *level, uint64_t key,
+                             const rc_copy *moves, int move_count, int copies);
 
 #endif

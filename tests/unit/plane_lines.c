@@ -82,12 +82,75 @@ static void others_do_not(void) {
   task_clear(&t);
 }
 
-static void same_for_threads(void) {
-  static const drawn lines[] = {{95, 0, 0}, {120, .02, 0}, {150, 0, 0}};
+/* Boards along u, 1 texel wide and some 9 long, each of its own shade, with grain and dark joints.
+ */
+static double boards(double u, double v, int k) {
+  int row = (int)floor(v), end;
+  double along = u / 9 + noise_at(row, 0, 20), across = v - row;
+  end = (int)floor(along);
+  if (across < .14 || along - end < .02) return .1;
+  int at = (int)floor(u / 3);
+  double part = u / 3 - at;
+  double grain = (1 - part) * noise_at(at, (int)floor(v * 9), 21) +
+                 part * noise_at(at + 1, (int)floor(v * 9), 21);
+  return .35 + .3 * noise_at(end, row, 22) + .15 * grain + .02 * k;
+}
+
+/* The joints between them alone, dark. */
+static double joints(double u, double v, int k) {
+  (void)u, (void)k;
+  return v - floor(v) < .14 ? 0 : 1;
+}
+
+/* The part of the joints between boards that are dark where they must be. */
+static double joints_kept(const char *settings) {
+  double kept = 0, all = 0;
+  picture rows = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, joints, 16, 40, 0);
+  for (int seed = 0; seed < 2; seed++) {
+    task t = task_new(picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, boards, 16, 40, 0), settings);
+    t.params.slant_deg = 40, t.params.seed = seed;
+    task_hole(&t, hole);
+    task_succeeds(&t);
+    for (int y = hole.y0; y < hole.y1; y++)
+      for (int x = hole.x0; x < hole.x1; x++) {
+        if (picture_get(&rows, x, y, 0) > .1f) continue;
+        all++;
+        kept += picture_get(&t.result, x, y, 0) < .3f;
+      }
+    task_clear(&t);
+  }
+  picture_clear(&rows);
+  g_test_message("%s: %.3f of the joints", settings, kept / all);
+  return kept / all;
+}
+
+static void boards_run(void) {
+  double flat = joints_kept("quality=draft surface=flat");
+  double raised = joints_kept("quality=draft surface=raised");
+  g_assert_cmpfloat(flat, >, .85);
+  g_assert_cmpfloat(raised, >, .85);
+  g_assert_cmpfloat(flat, >, joints_kept("quality=draft surface=flat engine-rails=0") + .1);
+}
+
+/* Moved along their courses bricks change. */
+static void bricks_do_not(void) {
+  guint64 hash[2];
+  for (int rails = 0; rails < 2; rails++) {
+    task t = task_new(picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, bricks, 16, 40, 0),
+                      rails ? "quality=draft" : "quality=draft engine-rails=0");
+    t.params.slant_deg = 40;
+    task_hole(&t, hole);
+    task_succeeds(&t);
+    hash[rails] = t.report.output_hash;
+    task_clear(&t);
+  }
+  g_assert_cmphex(hash[0], ==, hash[1]);
+}
+
+static void assert_same_for_threads(picture (*draw)(void), const char *settings) {
   guint64 hash = 0;
   for (int threads = 1; threads <= 3; threads++) {
-    /* Of four starts two are with lines, one of these from whole copies. */
-    task t = task_new(floor_with(lines, 3), "quality=draft surface=flat engine-starts=4");
+    task t = task_new(draw(), settings);
     t.params.slant_deg = 30;
     t.host.threads = threads;
     t.host.kernel = threads - 1;
@@ -99,10 +162,27 @@ static void same_for_threads(void) {
   }
 }
 
+static picture lines_drawn(void) {
+  static const drawn lines[] = {{95, 0, 0}, {120, .02, 0}, {150, 0, 0}};
+  return floor_with(lines, 3);
+}
+
+static picture boards_drawn(void) {
+  return picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, boards, 16, 30, 0);
+}
+
+static void same_for_threads(void) {
+  /* Of four starts two are with lines, one of these from whole copies. */
+  assert_same_for_threads(lines_drawn, "quality=draft surface=flat engine-starts=4");
+  assert_same_for_threads(boards_drawn, "quality=draft surface=raised");
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/lines/go-on", lines_go_on);
   g_test_add_func("/lines/others", others_do_not);
+  g_test_add_func("/lines/boards", boards_run);
+  g_test_add_func("/lines/bricks", bricks_do_not);
   g_test_add_func("/lines/same-bytes", same_for_threads);
   return g_test_run();
 }

@@ -1,0 +1,162 @@
+#include "synthesis/rails.h"
+
+#include <math.h>
+
+#include "base/memory.h"
+#include "base/random.h"
+#include "synthesis/profile.h"
+
+/* A texture runs if, moved along its lines by so many px of the coarsest level, it changes by less
+ * than this part of what it does moved across: boards .05 to .16, bricks and tiles .5 to 1. */
+#define RUN_PX 2.f
+#define MOST_ALONG .3
+/* The lines' own direction is good to .5 degrees; over a hole's length that is a joint's width. So
+ * so many directions to each side are tried, in tangents, first at the coarsest level and then so
+ * many levels finer. */
+#define TURNS 8
+#define COARSE_TURN .008f
+#define FINE_TURN .002f
+#define FINER_BY 2
+/* Points that are looked at, of scales near the hole's, and how many of them must be seen. */
+#define POINTS 2000
+#define TRIES (8 * POINTS)
+#define LEAST_SEEN 50
+#define WIDEST_RATIO 2.f
+
+typedef struct view {
+  const rc_image *image;
+  const rc_mask *flags;
+  rc_chart chart;
+  int count;
+  int32_t points[POINTS];
+} view;
+
+static bool source_at(const void *user, int x, int y, float *value) {
+  const view *v = user;
+  if (!rc_inside(v->flags->width, v->flags->height, x, y)) return false;
+  *value = rc_brightness_at(v->image, x, y);
+  return (*rc_flag(v->flags, x, y) & RC_SOURCE) != 0;
+}
+
+static void set_view(const rc_image *image, const rc_mask *flags, rc_chart chart, view *v) {
+  *v = (view){.image = image, .flags = flags, .chart = chart};
+  v->chart.raised = false;
+  for (uint32_t n = 0; n < TRIES && v->count < POINTS; n++) {
+    uint64_t bits = rc_random(rc_key(0, 97, 0), n, 0, 0);
+    int x = (int)rc_below((uint32_t)bits, (uint32_t)image->width);
+    int y = (int)rc_below((uint32_t)(bits >> 32), (uint32_t)image->height);
+    float w = 1.f + chart.lx * ((float)x - chart.x0) + chart.ly * ((float)y - chart.y0);
+    if (*rc_flag(flags, x, y) & RC_SOURCE && w > 1 / WIDEST_RATIO && w < WIDEST_RATIO)
+      v->points[v->count++] = y * image->width + x;
+  }
+}
+
+typedef struct change {
+  double squares, seen;
+} change;
+
+/* Adds what moving the plane by (a, b) changes. */
+static void look(const view *v, float a, float b, change *c) {
+  rc_ruler ruler = {source_at, v, 0, 0};
+  for (int i = 0; i < v->count; i++) {
+    int x = v->points[i] % v->image->width, y = v->points[i] / v->image->width;
+    float there, here = rc_brightness_at(v->image, x, y);
+    rc_place place = rc_copy_place(&v->chart, (rc_copy){a, b, 0}, (float)x - v->chart.x0,
+                                   (float)y - v->chart.y0);
+    if (place.beyond || !(place.ratio < WIDEST_RATIO && place.ratio > 1 / WIDEST_RATIO) ||
+        !rc_ruler_sample(&ruler, place.x + v->chart.x0, place.y + v->chart.y0, &there))
+      continue;
+    c->squares += (there - here) * (there - here);
+    c->seen++;
+  }
+}
+
+/* Its mean; INFINITY: too little was seen. */
+static double mean_of(const change *c) {
+  return c->seen < LEAST_SEEN ? INFINITY : c->squares / c->seen;
+}
+
+static rc_rails turned(rc_rails rails, float tangent) {
+  float a = rails.a - tangent * rails.b, b = rails.b + tangent * rails.a;
+  float length = sqrtf(a * a + b * b);
+  return (rc_rails){a / length, b / length};
+}
+
+/* Turned to where moves along change least. */
+static rc_rails sharpened(const view *v, rc_rails rails, float reach_px, float turn) {
+  static const float parts[] = {1, -1, .5f, -.5f};
+  rc_rails best = rails;
+  double least = INFINITY;
+  for (int n = -TURNS; n <= TURNS; n++) {
+    rc_rails r = turned(rails, turn * (float)n);
+    change c = {0, 0};
+    for (int k = 0; k < 4; k++)
+      look(v, parts[k] * reach_px * r.a, parts[k] * reach_px * r.b, &c);
+    if (mean_of(&c) < least) least = mean_of(&c), best = r;
+  }
+  return best;
+}
+
+/* The lines' median, long and clear ones counting more: grain leans where it likes. */
+static rc_rails median_of(const rc_chart *chart, const rc_crossing *lines, int count) {
+  float tangent[RC_MOST_LINES], weight[RC_MOST_LINES], all = 0, so_far = 0, median = 0;
+  rc_copy first = rc_crossing_direction(chart, &lines[0]);
+  for (int i = 0; i < count; i++) {
+    rc_copy d = rc_crossing_direction(chart, &lines[i]);
+    float length = rc_crossing_length(&lines[i]);
+    tangent[i] = (first.a * d.b - first.b * d.a) / (first.a * d.a + first.b * d.b);
+    all += weight[i] = sqrtf(lines[i].strength) * length * length;
+  }
+  while (so_far <= .5f * all) {
+    int least = 0;
+    for (int i = 1; i < count; i++)
+      if (tangent[i] < tangent[least]) least = i;
+    median = tangent[least], tangent[least] = INFINITY, so_far += weight[least];
+  }
+  return turned((rc_rails){first.a, first.b}, median);
+}
+
+rc_copy rc_copy_of_move(const rc_chart *chart, float x, float y, float a, float b) {
+  rc_copy move = {a, b, 0.f};
+  rc_chart flat = *chart;
+  if (!chart->raised) return move;
+  flat.raised = false;
+  rc_place place = rc_copy_place(&flat, move, x, y);
+  if (place.beyond) return (rc_copy){NAN, NAN, NAN};
+  return rc_copy_exact(chart, x, y, place.x, place.y);
+}
+
+rc_copy rc_copy_on_rails(const rc_rails *rails, const rc_chart *chart, float tolerance, float x,
+                         float y, float to_x, float to_y) {
+  rc_chart flat = *chart;
+  flat.raised = false;
+  rc_copy move = rc_copy_between(&flat, x, y, to_x, to_y);
+  float off = move.b * rails->a - move.a * rails->b;
+  float too_far = off > tolerance ? off - tolerance : off < -tolerance ? off + tolerance : 0.f;
+  return rc_copy_of_move(chart, x, y, move.a + too_far * rails->b, move.b - too_far * rails->a);
+}
+
+recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
+                            int levels, const rc_chart *chart, const rc_crossing *lines, int count,
+                            rc_rails *rails) {
+  int coarse = levels - 1, fine = coarse > FINER_BY ? coarse - FINER_BY : 0;
+  float reach_px = 0;
+  change along = {0, 0}, across = {0, 0};
+  view *v;
+  *rails = (rc_rails){0, 0};
+  if (!count) return RECEDE_OK;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, 1, &v));
+  rc_rails r = median_of(chart, lines, count);
+  set_view(&images[coarse], &masks[coarse], rc_chart_coarser(*chart, coarse), v);
+  look(v, RUN_PX * r.a, RUN_PX * r.b, &along);
+  look(v, -RUN_PX * r.b, RUN_PX * r.a, &across);
+  if (mean_of(&along) < MOST_ALONG * mean_of(&across)) {
+    for (int i = 0; i < count; i++) reach_px = fmaxf(reach_px, rc_crossing_length(&lines[i]));
+    r = sharpened(v, r, reach_px / (float)(1 << coarse), COARSE_TURN);
+    set_view(&images[fine], &masks[fine], rc_chart_coarser(*chart, fine), v);
+    *rails = sharpened(v, r, reach_px / (float)(1 << fine), FINE_TURN);
+  }
+  rc_release(context, mark);
+  return rc_poll(context);
+}

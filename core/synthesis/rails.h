@@ -1,0 +1,28 @@
+/* Textures that run along lines, as boards do: moved along they stay what they are, moved across
+ * they break. Such a hole is filled from what lies along it. */
+#ifndef RECEDE_SYNTHESIS_RAILS_H
+#define RECEDE_SYNTHESIS_RAILS_H
+
+#include "synthesis/lines.h"
+
+/* A direction of the plane, a unit vector; 0, 0: the texture does not run. */
+typedef struct rc_rails {
+  float a, b;
+} rc_rails;
+
+static inline bool rc_runs(const rc_rails *rails) { return rails->a != 0.f || rails->b != 0.f; }
+
+/* The copy that takes target (x, y) where moving the plane by (a, b) takes it. */
+rc_copy rc_copy_of_move(const rc_chart *chart, float x, float y, float a, float b);
+/* The copy that takes target (x, y) from (to_x, to_y), or from where it would come back to the
+ * rails, were it off by more than the tolerance, px. */
+rc_copy rc_copy_on_rails(const rc_rails *rails, const rc_chart *chart, float tolerance, float x,
+                         float y, float to_x, float to_y);
+
+/* From the lines that cross the hole, sharpened by how alike the texture is along them. images and
+ * masks: the pyramid's levels, finest first; chart: of the finest. */
+recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
+                            int levels, const rc_chart *chart, const rc_crossing *lines, int count,
+                            rc_rails *rails);
+
+#endif
