@@ -1,16 +1,17 @@
 #include "synthesis/compose.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "base/parallel.h"
 
-/* The join keeps to the copies within 1 / sqrt(.02) = 7 px of a seam. */
-#define SCREENING .02f
-/* Red-black over-relaxation: the Jacobi radius is 4 / 4.02, the best factor 1.82, and 40 sweeps
- * leave .82^40 = .0004 of the error. */
-#define RELAXATION 1.82f
-#define SWEEPS 40
+/* What an edge between two pixels counts in the join: a tile takes its neighbour's tone on up to
+ * its own joint, not across it. So within a copy an edge counts half where the copy changes as much
+ * as copies do in the mean. Between copies it counts whole: near the horizon, where hardly two
+ * pixels have one copy, those with contrast would else be levelled by those without. */
+#define WHOLE_EDGE 128.f
+#define LEAST_EDGE 1.f
 /* Half sweeps, red or black, that are done at once, and the rows of a band: a few hundred KB. */
 #define AT_ONCE 16
 #define BAND_ROWS 64
@@ -30,7 +31,10 @@ typedef struct composition {
   int half_w;
   float *correction; /* what the join adds; NULL: there is none */
   float *drive;      /* right-hand side of the join */
-  uint8_t *edges;    /* how many neighbours a pixel has */
+  uint8_t *edges[4]; /* what those to a pixel's neighbours count; 0: there is none */
+  float mean_change; /* square between neighbours, sum over channels */
+  double *changes;   /* of each row: their sum and how many */
+  float screening, relaxation;
 } composition;
 
 static const int step_x[4] = {-1, 1, 0, 0}, step_y[4] = {0, 0, -1, 1};
@@ -73,29 +77,70 @@ static void sample_row(void *user, int item, int thread) {
   }
 }
 
-/* Adds what the edge to (nx, ny) asks of pixel (x, y) beyond what the copies' values give already.
- */
-static void add_edge(const composition *c, int x, int y, int nx, int ny, const float *value,
-                     float *drive) {
+static float change(const composition *c, const float *from, const float *to) {
+  float sum = 0.f;
+  for (int k = 0; k < c->channels; k++) sum += (to[k] - from[k]) * (to[k] - from[k]);
+  return sum;
+}
+
+static void sum_changes(void *user, int item, int thread) {
+  const composition *c = user;
+  const rc_level *level = c->level;
+  double *changes = c->changes + 2 * (size_t)item;
+  int y = level->box.y0 + item;
+  (void)thread;
+  changes[0] = changes[1] = 0;
+  for (int x = level->box.x0; x + 1 < level->box.x1; x++) {
+    if (!rc_level_is_target(level, x, y) || !rc_level_is_target(level, x + 1, y)) continue;
+    const float *value = c->value + rc_level_at(level, x, y) * (size_t)c->channels;
+    changes[0] += (double)change(c, value, value + c->channels);
+    changes[1]++;
+  }
+}
+
+static recede_status set_mean_change(rc_context *context, composition *c) {
+  double sum = 0, count = 0;
+  RC_TRY(RC_NEW(context, 2 * (size_t)c->level->box_h, &c->changes));
+  RC_TRY(rc_parallel(context, c->level->box_h, sum_changes, c));
+  for (int row = 0; row < c->level->box_h; row++)
+    sum += c->changes[2 * row], count += c->changes[2 * row + 1];
+  c->mean_change = count > 0 ? (float)(sum / count) : 0.f;
+  return RECEDE_OK;
+}
+
+/* Of the edge between two pixels of one copy. */
+static uint8_t count_of(const composition *c, const float *from, const float *to) {
+  float changed = change(c, from, to);
+  float part = c->mean_change > 0.f ? changed / c->mean_change : 0.f;
+  float counts = WHOLE_EDGE / (1.f + part);
+  return (uint8_t)(counts > LEAST_EDGE ? counts : LEAST_EDGE);
+}
+
+/* What the edge to (nx, ny) counts, and adds what it asks of pixel (x, y) beyond what the copies'
+ * values give already. */
+static uint8_t add_edge(const composition *c, int x, int y, int nx, int ny, const float *value,
+                        float *drive) {
   const rc_level *level = c->level;
   rc_copy own = level->field[rc_level_at(level, x, y)];
-  float there[3], back[3], across[3];
+  float there[3], back[3];
   if (!rc_level_is_target(level, nx, ny)) { /* a known pixel, fixed; the copy's own gradient */
     const float *fixed = rc_pixel(c->residual, nx, ny);
     copy_value(c, own, nx, ny, there);
-    for (int k = 0; k < c->channels; k++) drive[k] += fixed[k] - there[k];
-    return;
+    uint8_t counts = count_of(c, value, there);
+    for (int k = 0; k < c->channels; k++) drive[k] += (float)counts * (fixed[k] - there[k]);
+    return counts;
   }
   size_t at = rc_level_at(level, nx, ny);
   rc_copy other = level->field[at];
-  if (isnan(other.a) || rc_same_copy(own, other)) return;
   const float *neighbour = c->value + at * (size_t)c->channels;
+  if (isnan(other.a) || rc_same_copy(own, other)) return count_of(c, value, neighbour);
   copy_value(c, own, nx, ny, there);
   copy_value(c, other, x, y, back);
   for (int k = 0; k < c->channels; k++) {
-    across[k] = .5f * ((value[k] - there[k]) + (back[k] - neighbour[k]));
-    drive[k] += across[k] - (value[k] - neighbour[k]);
+    float across = .5f * ((value[k] - there[k]) + (back[k] - neighbour[k]));
+    drive[k] += WHOLE_EDGE * (across - (value[k] - neighbour[k]));
   }
+  return (uint8_t)WHOLE_EDGE;
 }
 
 static void drive_row(void *user, int item, int thread) {
@@ -106,7 +151,7 @@ static void drive_row(void *user, int item, int thread) {
   for (int x = level->box.x0; x < level->box.x1; x++) {
     size_t at = rc_level_at(level, x, y);
     int parity = (x - level->box.x0) & 1, column = (x - level->box.x0) / 2;
-    uint8_t *edges = c->edges + half_edges(c, item, parity) + column;
+    size_t edge = half_edges(c, item, parity) + (size_t)column;
     float drive[3] = {0, 0, 0};
     if (!rc_level_is_target(level, x, y) || isnan(level->field[at].a)) continue;
     for (int e = 0; e < 4; e++) {
@@ -114,8 +159,7 @@ static void drive_row(void *user, int item, int thread) {
       if (!rc_inside(level->width, level->height, nx, ny)) continue;
       if (!(level->flags[(size_t)ny * (size_t)level->width + (size_t)nx] & (RC_TARGET | RC_KNOWN)))
         continue;
-      ++*edges;
-      add_edge(c, x, y, nx, ny, c->value + at * (size_t)c->channels, drive);
+      c->edges[e][edge] = add_edge(c, x, y, nx, ny, c->value + at * (size_t)c->channels, drive);
     }
     for (int k = 0; k < c->channels; k++)
       c->drive[half_row(c, item, parity, k) + (size_t)column] = drive[k];
@@ -123,15 +167,20 @@ static void drive_row(void *user, int item, int thread) {
 }
 
 /* Pixels without edges are none of the join's. */
-static void relax(int count, const uint8_t *restrict edges, const float *restrict drive,
+static void relax(const composition *c, size_t edge, const float *restrict drive,
                   const float *restrict left, const float *restrict up, const float *restrict down,
                   float *restrict own) {
+  const uint8_t *restrict l = c->edges[0] + edge, *restrict r = c->edges[1] + edge,
+                          *restrict u = c->edges[2] + edge, *restrict d = c->edges[3] + edge;
   const float *right = left + 1;
-  for (int i = 0; i < count; i++) {
-    float all = (float)edges[i] + SCREENING, scale = RELAXATION / all;
-    float sum = drive[i] - all * own[i] + left[i] + right[i] + up[i] + down[i];
-    float relaxed = own[i] + scale * sum;
-    own[i] = edges[i] ? relaxed : own[i];
+  float screening = c->screening, relaxation = c->relaxation;
+  for (int i = 0; i < c->half_w; i++) {
+    int edges = l[i] + r[i] + u[i] + d[i];
+    float all = (float)edges + screening;
+    float sum = drive[i] - all * own[i] + (float)l[i] * left[i] + (float)r[i] * right[i] +
+                (float)u[i] * up[i] + (float)d[i] * down[i];
+    float relaxed = own[i] + relaxation / all * sum;
+    own[i] = edges ? relaxed : own[i];
   }
 }
 
@@ -140,7 +189,7 @@ static void relax_row(const composition *c, int row, int half_sweep) {
   float *all = c->correction;
   for (int k = 0; k < c->channels; k++) {
     size_t own = half_row(c, row, parity, k);
-    relax(c->half_w, c->edges + half_edges(c, row, parity), c->drive + own,
+    relax(c, half_edges(c, row, parity), c->drive + own,
           all + half_row(c, row, !parity, k) - !parity, all + half_row(c, row - 1, parity, k),
           all + half_row(c, row + 1, parity, k), all + own);
   }
@@ -167,15 +216,21 @@ static void relax_seam(void *user, int seam, int thread) {
     for (int row = middle - h; row < middle + h && row < rows; row++) relax_row(c, row, h);
 }
 
-static recede_status solve_join(rc_context *context, composition *c) {
+static recede_status solve_join(rc_context *context, const rc_join *join, composition *c) {
   int rows = c->level->box_h;
   size_t count = (size_t)(rows + 2) * 2 * (size_t)c->channels * (size_t)(c->half_w + 2);
   RC_TRY(RC_NEW_ZERO(context, count, &c->correction));
   RC_TRY(RC_NEW_ZERO(context, count, &c->drive));
-  RC_TRY(RC_NEW_ZERO(context, (size_t)rows * 2 * (size_t)c->half_w, &c->edges));
+  for (int e = 0; e < 4; e++)
+    RC_TRY(RC_NEW_ZERO(context, (size_t)rows * 2 * (size_t)c->half_w, &c->edges[e]));
+  RC_TRY(set_mean_change(context, c));
+  /* Red-black over-relaxation by what is best for whole edges: their Jacobi radius is */
+  float screening = 1.f / (join->reach_px * join->reach_px), radius = 4.f / (4.f + screening);
+  c->screening = WHOLE_EDGE * screening;
+  c->relaxation = 2.f / (1.f + sqrtf(1.f - radius * radius));
   RC_TRY(rc_parallel(context, rows, drive_row, c));
   int bands = (rows + BAND_ROWS - 1) / BAND_ROWS;
-  for (int done = 0; done < 2 * SWEEPS; done += AT_ONCE) {
+  for (int done = 0; done < 2 * join->sweeps; done += AT_ONCE) {
     RC_TRY(rc_parallel(context, bands, relax_band, c));
     RC_TRY(rc_parallel(context, bands - 1, relax_seam, c));
   }
@@ -199,7 +254,8 @@ static void write_row(void *user, int item, int thread) {
 }
 
 recede_status rc_compose(rc_context *context, const rc_level *level, const rc_sampler *sampler,
-                         const rc_image *mips, int mip_count, bool join, rc_image *residual) {
+                         const rc_image *mips, int mip_count, const rc_join *join,
+                         rc_image *residual) {
   composition c = {.level = level,
                    .sampler = sampler,
                    .mips = mips,
@@ -211,7 +267,7 @@ recede_status rc_compose(rc_context *context, const rc_level *level, const rc_sa
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, values, &c.value));
   RC_TRY(rc_parallel(context, level->box_h, sample_row, &c));
-  if (join) RC_TRY(solve_join(context, &c));
+  if (join) RC_TRY(solve_join(context, join, &c));
   RC_TRY(rc_parallel(context, level->box_h, write_row, &c));
   rc_release(context, mark);
   return RECEDE_OK;

@@ -12,6 +12,7 @@
 #include "synthesis/compose.h"
 #include "synthesis/descent.h"
 #include "synthesis/detail.h"
+#include "synthesis/iterate.h"
 #include "synthesis/problem.h"
 #include "synthesis/surface.h"
 
@@ -179,8 +180,8 @@ static recede_status compose(rc_context *context, const rc_descent *e, const rc_
   }
   RC_TRY(RC_NEW(context, 1, &sampler));
   rc_sampler_init(sampler, !e->params->engine_spline);
-  return rc_compose(context, finest, sampler, e->images, e->level_count, e->params->engine_join,
-                    residual);
+  return rc_compose(context, finest, sampler, e->images, e->level_count,
+                    e->params->engine_join ? &rc_effort_of(e)->join : NULL, residual);
 }
 
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
@@ -223,7 +224,7 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t box, int channels, const reced
   /* Of the coarser levels, 1/3 of the finest, only the fields stay; the coarsest alone has sources
    * in order, but it may be the only one. */
   uint64_t levels = pixels * (4 + 1 + 1 + 4) + box * (12 + 4 + 1 + 1) * 4 / 3;
-  uint64_t search = box * (12 + 4 + 4) * 2 + pixels * 4, composition = box * (12 * c + 1);
+  uint64_t search = box * (12 + 4 + 4) * 2 + pixels * 4, composition = box * (12 * c + 4);
   uint64_t detail = (grown < pixels ? grown : pixels) * 12 * c + pixels;
   uint64_t last = search > composition ? search : composition;
   (void)params;

@@ -2,6 +2,7 @@
 #ifndef RECEDE_SYNTHESIS_ITERATE_H
 #define RECEDE_SYNTHESIS_ITERATE_H
 
+#include "synthesis/compose.h"
 #include "synthesis/descent.h"
 
 /* What the quality levels change. */
@@ -13,6 +14,7 @@ typedef struct rc_effort {
   int finest_iterations; /* and these at the finest; 0: only takes the coarser copies over */
   int anywhere;          /* random candidates per pixel from all sources, coarsest level */
   int local_radius;      /* largest radius of the random candidates nearby, px */
+  rc_join join;
 } rc_effort;
 
 /* Scratch of a level. */

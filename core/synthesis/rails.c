@@ -90,8 +90,7 @@ static rc_rails sharpened(const view *v, rc_rails rails, float reach_px, float t
   for (int n = -TURNS; n <= TURNS; n++) {
     rc_rails r = turned(rails, turn * (float)n);
     change c = {0, 0};
-    for (int k = 0; k < 4; k++)
-      look(v, parts[k] * reach_px * r.a, parts[k] * reach_px * r.b, &c);
+    for (int k = 0; k < 4; k++) look(v, parts[k] * reach_px * r.a, parts[k] * reach_px * r.b, &c);
     if (mean_of(&c) < least) least = mean_of(&c), best = r;
   }
   return best;

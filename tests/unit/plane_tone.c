@@ -1,0 +1,128 @@
+/* What light, sky and the stones around it do to the tone of a fill, through the public interface. */
+#include <math.h>
+
+#include "plane_scene.h"
+
+#define WIDTH 200
+#define HEIGHT 150
+
+/* Root mean square and mean of the step from column x - 1 to column x. */
+static moments step_at(const picture *p, int x, int y0, int y1) {
+  moments m = {0};
+  for (int y = y0; y < y1; y++) {
+    double d = picture_get(p, x, y, 0) - picture_get(p, x - 1, y, 0);
+    m.mean += d / (y1 - y0);
+    m.deviation += d * d / (y1 - y0);
+  }
+  m.deviation = sqrt(m.deviation);
+  return m;
+}
+
+/* Brightness drifts by half the range: the fill follows, and its sides step no more than any column
+ * of the truth. */
+static void drift_leaves_no_seam(void) {
+  task t = task_new(picture_of_plane(WIDTH, HEIGHT, 3, RECEDE_FLOAT, grains, 5, 40, 0), "slant=40");
+  for (int y = 0; y < HEIGHT; y++)
+    for (int x = 0; x < WIDTH; x++)
+      for (int k = 0; k < 3; k++)
+        picture_set(&t.image, x, y, k,
+                    .25f * picture_get(&t.image, x, y, k) + .6f * (float)x / WIDTH);
+  const area hole = {60, 45, 140, 105};
+  picture truth = picture_copy(&t.image);
+  task_hole(&t, hole);
+  picture_fill(&t.image, hole, 0);
+  task_succeeds(&t);
+  for (int x = hole.x0; x < hole.x1; x += 8) {
+    const area strip = {x, hole.y0, x + 8, hole.y1};
+    double got = moments_of(&t.result, &t.mask, true, strip, 0).mean;
+    double known = moments_of(&truth, &t.mask, true, strip, 0).mean;
+    g_test_message("strip at %d: %.3f, truth %.3f", x, got, known);
+    g_assert_cmpfloat(fabs(got - known), <, .05);
+  }
+  double usual = 0;
+  for (int x = hole.x0; x <= hole.x1; x++)
+    usual = fmax(usual, step_at(&truth, x, hole.y0, hole.y1).deviation);
+  for (int x = hole.x0; x <= hole.x1; x += hole.x1 - hole.x0) {
+    moments step = step_at(&t.result, x, hole.y0, hole.y1);
+    g_test_message("step at %d: mean %.4f, rms %.4f; the truth's largest %.4f", x, step.mean,
+                   step.deviation, usual);
+    g_assert_cmpfloat(fabs(step.mean), <, .01);
+    g_assert_cmpfloat(step.deviation, <, 1.1 * usual);
+  }
+  picture_clear(&truth);
+  task_clear(&t);
+}
+
+/* A grey floor, and a sky that gets bluer upwards, down to row 90. */
+static picture floor_under_sky(void) {
+  picture p = picture_new(320, 240, 3, RECEDE_U8);
+  for (int y = 0; y < 240; y++)
+    for (int x = 0; x < 320; x++)
+      for (int k = 0; k < 3; k++) {
+        double floor = .3 + .2 * noise_at(x, y, 7);
+        double sky = (k == 2 ? .9 : .6) - (k == 2 ? .001 : .004) * (90 - y) + .02 * noise_at(x, y, 8);
+        picture_set(&p, x, y, k, (float)(y < 90 ? sky : floor));
+      }
+  return p;
+}
+
+/* A horizon set too high puts the sky on the plane: the floor's light is none of its. */
+static void sky_tints_no_floor(void) {
+  const area hole = {0, 120, 320, 200};
+  task t = task_new(floor_under_sky(), "quality=draft orientation=horizon horizon=0,-30,320,-30");
+  task_hole(&t, hole);
+  task_succeeds(&t);
+  double red = moments_of(&t.result, &t.mask, true, hole, 0).mean;
+  double blue = moments_of(&t.result, &t.mask, true, hole, 2).mean;
+  g_test_message("red %.4f, blue %.4f", red, blue);
+  g_assert_cmpfloat(fabs(blue - red), <, .01);
+  task_clear(&t);
+}
+
+#define TILE_PX 48
+/* Tiles with dark joints; those of the third column are brighter. */
+static picture tiles(void) {
+  picture p = picture_new(384, 288, 1, RECEDE_U8);
+  for (int y = 0; y < 288; y++)
+    for (int x = 0; x < 384; x++) {
+      bool joint = x % TILE_PX < 3 || y % TILE_PX < 3;
+      double tone = x / TILE_PX == 2 ? .62 : .5;
+      picture_set(&p, x, y, 0, (float)((joint ? .2 : tone) + .04 * noise_at(x, y, 9)));
+    }
+  return p;
+}
+
+/* Mean of the tiles, not their joints, of some columns of the hole. */
+static double tone_of(const picture *p, int x0, int x1) {
+  double sum = 0, count = 0;
+  for (int y = 100; y < 190; y++)
+    for (int x = x0; x < x1; x++) {
+      if (y % TILE_PX < 5 || y % TILE_PX > TILE_PX - 3) continue;
+      sum += picture_get(p, x, y, 0);
+      count++;
+    }
+  return sum / count;
+}
+
+/* The hole cuts bright tiles that are no source: they go on bright, up to their own joint. */
+static void tiles_keep_their_tone(void) {
+  task t = task_new(tiles(), "orientation=frontal engine-tone=0");
+  task_hole(&t, (area){112, 90, 220, 200});
+  t.source = picture_new(384, 288, 1, RECEDE_U8);
+  picture_fill(&t.source, (area){0, 0, 384, 288}, 1);
+  picture_fill(&t.source, (area){2 * TILE_PX, 0, 3 * TILE_PX, 288}, 0);
+  task_succeeds(&t);
+  double cut = tone_of(&t.result, 126, 138), beyond = tone_of(&t.result, 152, 180);
+  g_test_message("14 to 26 px from the border %.3f, beyond the joint %.3f", cut, beyond);
+  g_assert_cmpfloat(cut, >, .57);
+  g_assert_cmpfloat(beyond, <, .54);
+  task_clear(&t);
+}
+
+int main(int argc, char **argv) {
+  g_test_init(&argc, &argv, NULL);
+  g_test_add_func("/tone/drift", drift_leaves_no_seam);
+  g_test_add_func("/tone/sky", sky_tints_no_floor);
+  g_test_add_func("/tone/tiles", tiles_keep_their_tone);
+  return g_test_run();
+}
