@@ -12,12 +12,9 @@
 #include "synthesis/whole.h"
 
 /* Broken lines are seen first: they cost on top of a start's misfit. Starts that continue them may
- * fit worse, for finer levels break what the coarsest still has, and thin lines are faint there. A
- * lattice carries lines of its own anyway: starts that continue them get one try there, and with
- * more favour they break bricks. */
+ * fit worse, for finer levels break what the coarsest still has, and thin lines are faint there. */
 #define PRICE_OF_BROKEN_LINES .3
 #define FAVOUR_OF_LINES 1.3
-#define FAVOUR_IN_LATTICE 1.2
 /* Moves along the rails are from so many px to so many; and so many target pixels may find nothing
  * along them: they go on from what lies beside them. */
 #define LEAST_MOVE_PX 6
@@ -138,15 +135,14 @@ static recede_status try_rails(rc_context *context, rc_descent *e, int first, in
 
 /* Starts with the lines locked. */
 static recede_status try_lines(rc_context *context, rc_descent *e, const starts *s, rc_pace *p,
-                               rc_level *level, rc_workspace *scratch, double misfit,
-                               double favour) {
+                               rc_level *level, rc_workspace *scratch, double misfit) {
   rc_trial best;
   double own;
   RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(rc_lines_lock(context, e->lines, e->line_count, e->level_count - 1, level));
   RC_TRY(try_starts(context, e, s, p, level, scratch, &best, &own));
   own += price_of_broken_lines(e, level, &best);
-  e->continue_lines = own < favour * misfit;
+  e->continue_lines = own < FAVOUR_OF_LINES * misfit;
   if (!e->continue_lines) RC_FREE(context, &level->locked);
   return RECEDE_OK;
 }
@@ -157,25 +153,16 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   int plain = rc_trials_worth(level, wanted ? wanted : rc_effort_of(e)->starts);
   int half = (plain + 1) / 2, iterations = rc_iterations_at(e, exponent);
   uint64_t key = rc_key((uint64_t)e->params->seed, 99, 0);
-  bool lattice = false, runs = rc_runs(&e->rails);
   double misfit;
   rc_trial best;
   if (e->params->engine_periods)
-    RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count, &lattice));
-  /* Boards are alike all along: what repeats there is chance. */
-  lattice = lattice && !runs;
-  /* Where lines cross the hole there are things that go on as a whole: boards, courses of tiles.
-   * But whole copies that break lines fit well, and must not win over those that continue them; a
-   * lattice's periods break none. */
-  bool whole = e->params->engine_whole && e->line_count > 0;
-  int with_lines = e->line_count == 0 ? 0 : lattice ? 1 : half, on_rails = runs ? half : 0;
-  int trials = plain + with_lines;
-  starts by_chance = {0, whole && lattice ? plain - plain / 2 : plain, plain, NULL, 0};
-  starts along_lines = {plain, whole ? trials - with_lines / 2 : trials, trials, NULL, 0};
-  if (lattice && !level->chart.raised) {
-    by_chance.moves = along_lines.moves = e->periods;
-    by_chance.move_count = along_lines.move_count = e->period_count;
-  }
+    RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count));
+  /* Where lines cross the hole there are things that go on as a whole. But whole copies that break
+   * lines fit well, and must not win over those that continue them. */
+  int with_lines = e->line_count ? half : 0, on_rails = rc_runs(&e->rails) ? half : 0;
+  int trials = plain + with_lines, whole = e->params->engine_whole ? with_lines / 2 : 0;
+  starts by_chance = {0, plain, plain, NULL, 0};
+  starts along_lines = {plain, trials - whole, trials, NULL, 0};
   if (trials == 1) {
     rc_pace p = {0, iterations};
     RC_TRY(start_once(context, e, &by_chance, 0, level));
@@ -186,11 +173,9 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(try_starts(context, e, &by_chance, &p, level, scratch, &best, &misfit));
   if (e->line_count) misfit += price_of_broken_lines(e, level, &best);
-  if (runs) RC_TRY(try_rails(context, e, trials, on_rails, &p, level, scratch, misfit));
-  if (e->line_count && !e->on_rails) {
-    double favour = lattice ? FAVOUR_IN_LATTICE : FAVOUR_OF_LINES;
-    RC_TRY(try_lines(context, e, &along_lines, &p, level, scratch, misfit, favour));
-  }
+  if (on_rails) RC_TRY(try_rails(context, e, trials, on_rails, &p, level, scratch, misfit));
+  if (e->line_count && !e->on_rails)
+    RC_TRY(try_lines(context, e, &along_lines, &p, level, scratch, misfit));
   if (!e->on_rails && !e->continue_lines) rc_trial_restore(level, &best);
   return RECEDE_OK;
 }

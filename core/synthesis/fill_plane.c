@@ -124,9 +124,10 @@ static recede_status find_lines(rc_context *context, rc_descent *e) {
   if (!e->params->engine_lines) return RECEDE_OK;
   RC_TRY(rc_lines_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
                        &e->line_count));
-  if (!e->params->engine_rails) return RECEDE_OK;
-  return rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
-                       e->line_count, &e->rails);
+  RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
+                       &e->line_count, &e->rails));
+  if (!e->params->engine_rails) e->rails = (rc_rails){0, 0};
+  return RECEDE_OK;
 }
 
 static void count_magnified(rc_context *context, const rc_descent *e, const rc_level *level) {

@@ -15,12 +15,6 @@
 #define POINTS 1200
 #define LEAST_SHARED 300
 #define LEAST_PEAK .12f
-/* A lattice repeats as clearly as this in two directions more than 30 degrees apart, and half-way
- * to it is something else: bricks and tiles, not boards, which are alike all along. */
-#define LEAST_LATTICE .4f
-#define LEAST_SINE .5f
-#define LEAST_ABOVE_HALF_WAY .25f
-
 typedef struct correlation {
   const rc_level *level;
   rc_chart flat;
@@ -90,26 +84,8 @@ static int stronger_first(const void *a, const void *b) {
   return p->y != q->y ? (p->y > q->y) - (p->y < q->y) : (p->x > q->x) - (p->x < q->x);
 }
 
-static bool stands_out(const correlation *c, const peak *p) {
-  int dx = (int)rc_round(p->x / 2), dy = (int)rc_round(p->y / 2);
-  return p->value >= LEAST_LATTICE && p->value - value_at(c, dx, dy) >= LEAST_ABOVE_HALF_WAY;
-}
-
-/* Peaks: strongest first. */
-static bool is_lattice(const correlation *c, const peak *peaks, int count) {
-  const peak *first = NULL;
-  for (int i = 0; i < count && peaks[i].value >= LEAST_LATTICE; i++) {
-    if (!stands_out(c, &peaks[i])) continue;
-    if (!first) first = &peaks[i];
-    float x = first->x, y = first->y, cross = x * peaks[i].y - y * peaks[i].x;
-    float squares = (x * x + y * y) * (peaks[i].x * peaks[i].x + peaks[i].y * peaks[i].y);
-    if (cross * cross > LEAST_SINE * LEAST_SINE * squares) return true;
-  }
-  return false;
-}
-
 static recede_status collect(rc_context *context, const correlation *c,
-                             rc_copy periods[RC_MOST_PERIODS], int *count, bool *lattice) {
+                             rc_copy periods[RC_MOST_PERIODS], int *count) {
   peak *peaks;
   int found = 0, most = (c->lag + 1) * (2 * c->lag + 1);
   RC_TRY(RC_NEW(context, most, &peaks));
@@ -122,7 +98,6 @@ static recede_status collect(rc_context *context, const correlation *c,
                  (float)dy + vertex(value_at(c, dx, dy - 1), own, value_at(c, dx, dy + 1))};
     }
   qsort(peaks, (size_t)found, sizeof *peaks, stronger_first);
-  *lattice = is_lattice(c, peaks, found);
   for (int i = 0; i < found && *count + 1 < RC_MOST_PERIODS; i++) {
     periods[(*count)++] = (rc_copy){peaks[i].x, peaks[i].y, 0.f};
     periods[(*count)++] = (rc_copy){-peaks[i].x, -peaks[i].y, 0.f};
@@ -131,7 +106,7 @@ static recede_status collect(rc_context *context, const correlation *c,
 }
 
 recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key,
-                              rc_copy periods[RC_MOST_PERIODS], int *count, bool *lattice) {
+                              rc_copy periods[RC_MOST_PERIODS], int *count) {
   size_t pixels = (size_t)level->width * (size_t)level->height;
   int sources = level->first[level->bins];
   int third = (level->width < level->height ? level->width : level->height) / 3;
@@ -139,7 +114,6 @@ recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64
   float *brightness;
   int32_t *points;
   *count = 0;
-  *lattice = false;
   c.flat.raised = false;
   c.lag = third < MOST_LAG_PX ? third : MOST_LAG_PX;
   if (sources < LEAST_SHARED || c.lag <= LEAST_LAG_PX) return RECEDE_OK;
@@ -153,7 +127,7 @@ recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64
         level->order[rc_below((uint32_t)rc_random(key, (uint32_t)i, 0, 0), (uint32_t)sources)];
   c.brightness = brightness, c.points = points;
   RC_TRY(rc_parallel(context, c.lag + 1, correlate_row, &c));
-  RC_TRY(collect(context, &c, periods, count, lattice));
+  RC_TRY(collect(context, &c, periods, count));
   rc_release(context, mark);
   return RECEDE_OK;
 }

@@ -10,6 +10,12 @@
  * than this part of what it does moved across: boards .05 to .16, bricks and tiles .5 to 1. */
 #define RUN_PX 2.f
 #define MOST_ALONG .3
+/* A texture repeats if, moved along by so many px of the coarsest level, it changes by less than
+ * this part of what it does moved half as far: bricks and tiles .25 to .68, roofs .83 to .91,
+ * cracks .96, boards 1 and more. */
+#define LEAST_PERIOD_PX 6
+#define MOST_PERIOD_PX 64
+#define MOST_REPEATED .75
 /* The lines' own direction is good to .5 degrees; over a hole's length that is a joint's width. So
  * so many directions to each side are tried, in tangents, first at the coarsest level and then so
  * many levels finer. */
@@ -135,26 +141,43 @@ rc_copy rc_copy_on_rails(const rc_rails *rails, const rc_chart *chart, float tol
   return rc_copy_of_move(chart, x, y, move.a + too_far * rails->b, move.b - too_far * rails->a);
 }
 
+static bool repeats(const view *v, rc_rails r) {
+  double changes[MOST_PERIOD_PX + 1];
+  for (int px = LEAST_PERIOD_PX / 2; px <= MOST_PERIOD_PX; px++) {
+    float by = (float)px;
+    change c = {0, 0};
+    look(v, by * r.a, by * r.b, &c);
+    look(v, -by * r.a, -by * r.b, &c);
+    changes[px] = mean_of(&c);
+    if (px < LEAST_PERIOD_PX) continue;
+    double half_way = fmin(changes[px / 2], changes[(px + 1) / 2]);
+    if (half_way < INFINITY && changes[px] < MOST_REPEATED * half_way) return true;
+  }
+  return false;
+}
+
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
-                            int levels, const rc_chart *chart, const rc_crossing *lines, int count,
+                            int levels, const rc_chart *chart, const rc_crossing *lines, int *count,
                             rc_rails *rails) {
   int coarse = levels - 1, fine = coarse > FINER_BY ? coarse - FINER_BY : 0;
   float reach_px = 0;
   change along = {0, 0}, across = {0, 0};
   view *v;
   *rails = (rc_rails){0, 0};
-  if (!count) return RECEDE_OK;
+  if (!*count) return RECEDE_OK;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, 1, &v));
-  rc_rails r = median_of(chart, lines, count);
+  rc_rails r = median_of(chart, lines, *count);
   set_view(&images[coarse], &masks[coarse], rc_chart_coarser(*chart, coarse), v);
   look(v, RUN_PX * r.a, RUN_PX * r.b, &along);
   look(v, -RUN_PX * r.b, RUN_PX * r.a, &across);
   if (mean_of(&along) < MOST_ALONG * mean_of(&across)) {
-    for (int i = 0; i < count; i++) reach_px = fmaxf(reach_px, rc_crossing_length(&lines[i]));
+    for (int i = 0; i < *count; i++) reach_px = fmaxf(reach_px, rc_crossing_length(&lines[i]));
     r = sharpened(v, r, reach_px / (float)(1 << coarse), COARSE_TURN);
     set_view(&images[fine], &masks[fine], rc_chart_coarser(*chart, fine), v);
     *rails = sharpened(v, r, reach_px / (float)(1 << fine), FINE_TURN);
+  } else if (repeats(v, r)) {
+    *count = 0;
   }
   rc_release(context, mark);
   return rc_poll(context);

@@ -1,5 +1,6 @@
-/* Textures that run along lines, as boards do: moved along they stay what they are, moved across
- * they break. Such a hole is filled from what lies along it. */
+/* How textures go on along the lines that cross the hole. Boards run: moved along they stay what
+ * they are, and such a hole is filled from what lies along it. Bricks and tiles repeat: each line
+ * moved by itself would break the joints between them. */
 #ifndef RECEDE_SYNTHESIS_RAILS_H
 #define RECEDE_SYNTHESIS_RAILS_H
 
@@ -19,10 +20,11 @@ rc_copy rc_copy_of_move(const rc_chart *chart, float x, float y, float a, float 
 rc_copy rc_copy_on_rails(const rc_rails *rails, const rc_chart *chart, float tolerance, float x,
                          float y, float to_x, float to_y);
 
-/* From the lines that cross the hole, sharpened by how alike the texture is along them. images and
- * masks: the pyramid's levels, finest first; chart: of the finest. */
+/* From the lines that cross the hole, sharpened by how alike the texture is along them; *count
+ * becomes 0 where it repeats. images and masks: the pyramid's levels, finest first; chart: of the
+ * finest. */
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
-                            int levels, const rc_chart *chart, const rc_crossing *lines, int count,
+                            int levels, const rc_chart *chart, const rc_crossing *lines, int *count,
                             rc_rails *rails);
 
 #endif

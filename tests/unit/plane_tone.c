@@ -1,4 +1,5 @@
-/* What light, sky and the stones around it do to the tone of a fill, through the public interface. */
+/* What light, sky and the stones around it do to the tone of a fill, through the public interface.
+ */
 #include <math.h>
 
 #include "plane_scene.h"
@@ -60,7 +61,8 @@ static picture floor_under_sky(void) {
     for (int x = 0; x < 320; x++)
       for (int k = 0; k < 3; k++) {
         double floor = .3 + .2 * noise_at(x, y, 7);
-        double sky = (k == 2 ? .9 : .6) - (k == 2 ? .001 : .004) * (90 - y) + .02 * noise_at(x, y, 8);
+        double sky =
+            (k == 2 ? .9 : .6) - (k == 2 ? .001 : .004) * (90 - y) + .02 * noise_at(x, y, 8);
         picture_set(&p, x, y, k, (float)(y < 90 ? sky : floor));
       }
   return p;
@@ -114,7 +116,7 @@ static void tiles_keep_their_tone(void) {
   task_succeeds(&t);
   double cut = tone_of(&t.result, 126, 138), beyond = tone_of(&t.result, 152, 180);
   g_test_message("14 to 26 px from the border %.3f, beyond the joint %.3f", cut, beyond);
-  g_assert_cmpfloat(cut, >, .57);
+  g_assert_cmpfloat(cut, >, .555); /* by a join of 7 px .533 */
   g_assert_cmpfloat(beyond, <, .54);
   task_clear(&t);
 }
