@@ -147,14 +147,15 @@ static uint64_t pixels_in(rc_box box) {
   return (uint64_t)(box.x1 - box.x0) * (uint64_t)(box.y1 - box.y0);
 }
 
-/* pixels: looked at; box: those of the target's bounding box. */
-static uint64_t bytes_of_fill(const recede_job *job, uint64_t pixels, uint64_t box) {
+/* pixels: looked at; columns and rows: of the target's bounding box. */
+static uint64_t bytes_of_fill(const recede_job *job, uint64_t pixels, uint64_t columns,
+                              uint64_t rows) {
   int colours = job->image.channels < 3 ? 1 : 3;
   uint64_t problem = pixels * (uint64_t)(colours * 4 + 1) + ((uint64_t)4 << 20);
   return problem + (job->params.method == RECEDE_METHOD_PLANE
-                        ? rc_plane_bytes(pixels, box, colours, &job->params)
+                        ? rc_plane_bytes(pixels, columns, rows, colours)
                         : pixels * (uint64_t)(colours * 4) +
-                              rc_paper_bytes(pixels, box, colours, &job->params));
+                              rc_paper_bytes(pixels, columns * rows, colours, &job->params));
 }
 
 static recede_status refuse_too_large(rc_context *context, uint64_t bytes) {
@@ -173,9 +174,10 @@ static recede_status plan_fill(recede_job *job, rc_target_summary *summary) {
   RC_TRY(check_same_size(job, &job->mask, "mask"));
   RC_TRY(check_same_size(job, &job->source, "source mask"));
   RC_TRY(rc_summarize_target(&job->context, &job->mask, summary));
-  rc_box box = rc_problem_box(summary, job->image.width, job->image.height);
+  rc_box box = rc_problem_box(summary, job->image.width, job->image.height), target = summary->box;
   return refuse_too_large(&job->context,
-                          bytes_of_fill(job, pixels_in(box), pixels_in(summary->box)));
+                          bytes_of_fill(job, pixels_in(box), (uint64_t)(target.x1 - target.x0),
+                                        (uint64_t)(target.y1 - target.y0)));
 }
 
 recede_status recede_job_estimate_fill(recede_job *job, uint64_t *bytes, double *seconds) {
@@ -247,7 +249,8 @@ static recede_status plan_synthesis(recede_job *job, int width, int height) {
   RC_TRY(check_same_size(job, &job->source, "source mask"));
   uint64_t pixels = (uint64_t)width * (uint64_t)height;
   uint64_t exemplar = (uint64_t)job->image.width * (uint64_t)job->image.height;
-  return refuse_too_large(&job->context, bytes_of_fill(job, pixels + exemplar, pixels));
+  return refuse_too_large(&job->context,
+                          bytes_of_fill(job, pixels + exemplar, (uint64_t)width, (uint64_t)height));
 }
 
 recede_status recede_job_estimate_synthesize(recede_job *job, int width, int height,

@@ -209,7 +209,7 @@ static recede_status enough_left(rc_context *context, const comparison *c, const
     target += c->flags->data[i] & RC_TARGET ? 1 : 0;
   RC_TRY(count_places(context, c, band, true, &before));
   RC_TRY(count_places(context, c, band, false, &after));
-  *enough = after >= target || 2 * after >= before;
+  *enough = after >= target || (before && 2 * after >= before);
   return RECEDE_OK;
 }
 

@@ -15,8 +15,8 @@
  * fit worse, for finer levels break what the coarsest still has, and thin lines are faint there. */
 #define PRICE_OF_BROKEN_LINES .3
 #define FAVOUR_OF_LINES 1.3
-/* Moves along the rails are from so many px to so many; and so many target pixels may find nothing
- * along them: they go on from what lies beside them. */
+/* Moves along the rails are from so many px to so many, no more than whole.c looks at; and so many
+ * target pixels may find nothing along them: they go on from what lies beside them. */
 #define LEAST_MOVE_PX 6
 #define MOST_MOVE_PX 1000
 #define MOST_WITHOUT_COPY .02

@@ -90,11 +90,14 @@ static void sum_changes(void *user, int item, int thread) {
   int y = level->box.y0 + item;
   (void)thread;
   changes[0] = changes[1] = 0;
-  for (int x = level->box.x0; x + 1 < level->box.x1; x++) {
-    if (!rc_level_is_target(level, x, y) || !rc_level_is_target(level, x + 1, y)) continue;
+  for (int x = level->box.x0; x < level->box.x1; x++) {
+    if (!rc_level_is_target(level, x, y)) continue;
     const float *value = c->value + rc_level_at(level, x, y) * (size_t)c->channels;
-    changes[0] += (double)change(c, value, value + c->channels);
-    changes[1]++;
+    const float *below = value + (size_t)level->box_w * (size_t)c->channels;
+    if (x + 1 < level->box.x1 && rc_level_is_target(level, x + 1, y))
+      changes[0] += (double)change(c, value, value + c->channels), changes[1]++;
+    if (y + 1 < level->box.y1 && rc_level_is_target(level, x, y + 1))
+      changes[0] += (double)change(c, value, below), changes[1]++;
   }
 }
 

@@ -7,7 +7,7 @@
 #include "synthesis/level.h"
 
 /* How far from a seam a copy takes its neighbours' tone on, and by how many sweeps, a multiple of
- * 8, that is solved: 2 for each px leave 2 % of the error. */
+ * 8, that is solved: 3 for each px leave 1 to 2 % of the error. */
 typedef struct rc_join {
   float reach_px;
   int sweeps;

@@ -4,8 +4,8 @@
  *   X' = (X + d w) / (1 - (l . d) w),   w(X') = w / (1 - (l . d) w),   w(X) = 1 + l . X
  * so scale, flattening, shear and converging lines come right by themselves.
  * Raised: an upright similarity X' = r X + t of things that stand up from the plane, r the ratio of
- * scales in steps of 2^(1/8), so that neighbours can share it; r = 1 is a move by whole pixels but
- * along lines. */
+ * scales in steps of 2^(1/8), so that neighbours can share it; r = 1 is a move by whole pixels.
+ * Along lines both are exact. */
 #ifndef RECEDE_SYNTHESIS_COPY_H
 #define RECEDE_SYNTHESIS_COPY_H
 

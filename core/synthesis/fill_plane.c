@@ -1,6 +1,6 @@
 /* Method plane: the only file that knows the order of the stages.
- * tone -> pyramid -> sources that look alike -> start -> (search <-> vote) per level, coarse to
- * fine -> composition -> detail.
+ * tone -> pyramid -> sources that look alike -> lines and rails -> start -> (search <-> vote) per
+ * level, coarse to fine -> composition -> detail.
  */
 #include <math.h>
 
@@ -218,16 +218,17 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   return rc_tone_apply(context, &tone, &problem->flags, RC_TARGET, 1, filled);
 }
 
-uint64_t rc_plane_bytes(uint64_t pixels, uint64_t box, int channels, const recede_params *params) {
-  uint64_t c = (uint64_t)channels;
+uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int channels) {
+  uint64_t c = (uint64_t)channels, box = columns * rows;
   uint64_t grown = 4 * box + (256 << 10); /* the box that detail is measured in */
   uint64_t pyramid = pixels * (4 * c + 1) / 3;
   /* Of the coarser levels, 1/3 of the finest, only the fields stay; the coarsest alone has sources
    * in order, but it may be the only one. */
   uint64_t levels = pixels * (4 + 1 + 1 + 4) + box * (12 + 4 + 1 + 1) * 4 / 3;
-  uint64_t search = box * (12 + 4 + 4) * 2 + pixels * 4, composition = box * (12 * c + 4);
+  uint64_t search = box * (12 + 4 + 4) * 2 + pixels * 4;
+  uint64_t pads = rows * (40 * c + 20) + 16 * c * (columns + 5);
+  uint64_t composition = box * (12 * c + 4) + pads;
   uint64_t detail = (grown < pixels ? grown : pixels) * 12 * c + pixels;
   uint64_t last = search > composition ? search : composition;
-  (void)params;
   return pyramid + levels + (last > detail ? last : detail) + ((uint64_t)4 << 20);
 }

@@ -13,10 +13,11 @@ typedef struct rc_rails {
 
 static inline bool rc_runs(const rc_rails *rails) { return rails->a != 0.f || rails->b != 0.f; }
 
-/* The copy that takes target (x, y) where moving the plane by (a, b) takes it. */
+/* The copy that takes target (x, y) where moving the plane by (a, b) takes it; a = NAN: beyond the
+ * horizon. */
 rc_copy rc_copy_of_move(const rc_chart *chart, float x, float y, float a, float b);
-/* The copy that takes target (x, y) from (to_x, to_y), or from where it would come back to the
- * rails, were it off by more than the tolerance, px. */
+/* The copy that takes target (x, y) from (to_x, to_y) or, were that off the rails by more than the
+ * tolerance (px where w = 1), from the nearest point that is not. */
 rc_copy rc_copy_on_rails(const rc_rails *rails, const rc_chart *chart, float tolerance, float x,
                          float y, float to_x, float to_y);
 

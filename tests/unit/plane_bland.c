@@ -87,9 +87,35 @@ static void walls_stay_out(void) {
   g_assert_cmpfloat(wall_in_hole("orientation=frontal quality=draft", true), >, .5);
 }
 
+/* A green road from row 114 on, a plain strip between it and a hole as wide as the picture, and
+ * sky. */
+static picture road_far_off(void) {
+  picture p = picture_new(400, 300, 3, RECEDE_U8);
+  for (int y = 0; y < 300; y++)
+    for (int x = 0; x < 400; x++)
+      for (int k = 0; k < 3; k++) {
+        double sky = (k == 2 ? .9 : .7) + .01 * noise_at(x, y, 1);
+        double strip = .5 + .05 * noise_at(x, y, 2);
+        double road = (k == 0 ? .15 : .25) + (k == 1 ? .5 * noise_at(x / 3, y / 3, 3) : 0);
+        picture_set(&p, x, y, k, (float)(y < 100 ? sky : y < 114 ? strip : road));
+      }
+  return p;
+}
+
+/* Near the horizon nothing of the hole's own scales has room for a patch: what there is stays. */
+static void something_stays(void) {
+  const area hole = {0, 100, 400, 108};
+  task t = task_new(road_far_off(), "quality=draft orientation=horizon horizon=0,88,400,88");
+  task_hole(&t, hole);
+  task_succeeds(&t);
+  g_assert_cmpfloat(moments_of(&t.result, &t.mask, true, hole, 1).deviation, >, .03);
+  task_clear(&t);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/bland/flowers", flowers_go_on);
   g_test_add_func("/bland/walls", walls_stay_out);
+  g_test_add_func("/bland/far", something_stays);
   return g_test_run();
 }
