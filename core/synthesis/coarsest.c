@@ -124,12 +124,14 @@ static recede_status try_rails(rc_context *context, rc_descent *e, int first, in
   starts s = {first, first, first + count, NULL, 0};
   rc_trial best;
   double own;
+  rc_block *mark = rc_mark(context);
   RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
   e->on_rails = true;
   RC_TRY(try_starts(context, e, &s, p, level, scratch, &best, &own));
   own += price_of_broken_lines(e, level, &best);
   e->on_rails = own < FAVOUR_OF_LINES * misfit && nearly_all_have_copies(level);
+  rc_release(context, mark); /* what is kept the level holds */
   return RECEDE_OK;
 }
 

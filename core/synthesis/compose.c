@@ -12,6 +12,9 @@
  * pixels have one copy, those with contrast would else be levelled by those without. */
 #define WHOLE_EDGE 128.f
 #define LEAST_EDGE 1.f
+/* But no farther than this part of the hole, or a small one would have no tone of its own. */
+#define REACH_OF_HOLE .2f
+#define LEAST_REACH_PX 7.f
 /* Half sweeps, red or black, that are done at once, and the rows of a band: a few hundred KB. */
 #define AT_ONCE 16
 #define BAND_ROWS 64
@@ -228,7 +231,9 @@ static recede_status solve_join(rc_context *context, const rc_join *join, compos
     RC_TRY(RC_NEW_ZERO(context, (size_t)rows * 2 * (size_t)c->half_w, &c->edges[e]));
   RC_TRY(set_mean_change(context, c));
   /* Red-black over-relaxation by what is best for whole edges: their Jacobi radius is */
-  float screening = 1.f / (join->reach_px * join->reach_px), radius = 4.f / (4.f + screening);
+  float of_hole = REACH_OF_HOLE * (float)(rows < c->level->box_w ? rows : c->level->box_w);
+  float reach_px = fminf(join->reach_px, fmaxf(of_hole, LEAST_REACH_PX));
+  float screening = 1.f / (reach_px * reach_px), radius = 4.f / (4.f + screening);
   c->screening = WHOLE_EDGE * screening;
   c->relaxation = 2.f / (1.f + sqrtf(1.f - radius * radius));
   RC_TRY(rc_parallel(context, rows, drive_row, c));

@@ -91,6 +91,7 @@ static void find_box(rc_level *level) {
       if (y < box.y0) box.y0 = y;
       box.y1 = y + 1;
     }
+  if (!box.x1) box = (rc_box){0, 0, 0, 0}; /* all is known: nothing to fill */
   level->box = box;
   level->box_w = box.x1 - box.x0;
   level->box_h = box.y1 - box.y0;

@@ -223,6 +223,14 @@ static void synthesis_keeps_the_exemplar(void) {
   }
 }
 
+/* All of a result smaller than the exemplar is the exemplar's. */
+static void synthesis_may_cut(void) {
+  task t = task_new(picture_of_plane(96, 72, 3, RECEDE_U8, grains, 5, 0, 0), "orientation=frontal");
+  task_synthesize(&t, 60, 50);
+  g_assert_cmpstr(t.message, ==, "");
+  task_clear(&t);
+}
+
 /* Near the horizon no whole patch of the exemplar is small enough: the texture goes on all the
  * same.
  */
@@ -266,6 +274,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/plane/beyond", all_beyond_the_horizon);
   g_test_add_func("/plane/source", source_is_respected);
   g_test_add_func("/plane/synthesis", synthesis_keeps_the_exemplar);
+  g_test_add_func("/plane/cut", synthesis_may_cut);
   g_test_add_func("/plane/far", texture_reaches_the_horizon);
   g_test_add_func("/plane/surface", surface_is_told);
   return g_test_run();
