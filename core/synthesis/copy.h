@@ -26,6 +26,12 @@ typedef struct rc_chart {
   bool raised;
 } rc_chart;
 
+/* The same for copies within the plane, as which moves and directions are told. */
+static inline rc_chart rc_chart_flat(rc_chart chart) {
+  chart.raised = false;
+  return chart;
+}
+
 typedef struct rc_place {
   float x, y;     /* source position X', relative like X */
   float ratio;    /* w(X') / w(X): the source's resolution over the target's, across */

@@ -91,8 +91,7 @@ static bool goes_on(const frame *f, float outwards, float x, float y, const rc_p
  * until its point split lies just outside the hole, beyond a for what lies before it. */
 static bool straight_source(const frame *f, float split, float t, float *x, float *y) {
   const rc_crossing *c = f->line;
-  rc_chart flat = *f->chart;
-  flat.raised = false;
+  rc_chart flat = rc_chart_flat(*f->chart);
   float margin = (RC_PROFILE_FROM_PX + RC_PATCH_RADIUS) / f->length;
   float to = t < split ? -margin : 1 + margin, dx = c->bx - c->ax, dy = c->by - c->ay;
   float ax = c->ax - flat.x0, ay = c->ay - flat.y0;

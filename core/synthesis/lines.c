@@ -220,8 +220,7 @@ static void pair_up(const finder *f, rc_crossing lines[RC_MOST_LINES], int *coun
 }
 
 rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *c) {
-  rc_chart flat = *chart;
-  flat.raised = false;
+  rc_chart flat = rc_chart_flat(*chart);
   rc_copy d =
       rc_copy_between(&flat, c->ax - flat.x0, c->ay - flat.y0, c->bx - flat.x0, c->by - flat.y0);
   float length = sqrtf(d.a * d.a + d.b * d.b);

@@ -15,6 +15,7 @@
 #define POINTS 1200
 #define LEAST_SHARED 300
 #define LEAST_PEAK .12f
+
 typedef struct correlation {
   const rc_level *level;
   rc_chart flat;
@@ -110,11 +111,10 @@ recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64
   size_t pixels = (size_t)level->width * (size_t)level->height;
   int sources = level->first[level->bins];
   int third = (level->width < level->height ? level->width : level->height) / 3;
-  correlation c = {.level = level, .flat = level->chart};
+  correlation c = {.level = level, .flat = rc_chart_flat(level->chart)};
   float *brightness;
   int32_t *points;
   *count = 0;
-  c.flat.raised = false;
   c.lag = third < MOST_LAG_PX ? third : MOST_LAG_PX;
   if (sources < LEAST_SHARED || c.lag <= LEAST_LAG_PX) return RECEDE_OK;
   rc_block *mark = rc_mark(context);

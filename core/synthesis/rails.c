@@ -45,8 +45,7 @@ static bool source_at(const void *user, int x, int y, float *value) {
 }
 
 static void set_view(const rc_image *image, const rc_mask *flags, rc_chart chart, view *v) {
-  *v = (view){.image = image, .flags = flags, .chart = chart};
-  v->chart.raised = false;
+  *v = (view){.image = image, .flags = flags, .chart = rc_chart_flat(chart)};
   for (uint32_t n = 0; n < TRIES && v->count < POINTS; n++) {
     uint64_t bits = rc_random(rc_key(0, 97, 0), n, 0, 0);
     int x = (int)rc_below((uint32_t)bits, (uint32_t)image->width);
@@ -123,9 +122,8 @@ static rc_rails median_of(const rc_chart *chart, const rc_crossing *lines, int c
 
 rc_copy rc_copy_of_move(const rc_chart *chart, float x, float y, float a, float b) {
   rc_copy move = {a, b, 0.f};
-  rc_chart flat = *chart;
+  rc_chart flat = rc_chart_flat(*chart);
   if (!chart->raised) return move;
-  flat.raised = false;
   rc_place place = rc_copy_place(&flat, move, x, y);
   if (place.beyond) return (rc_copy){NAN, NAN, NAN};
   return rc_copy_exact(chart, x, y, place.x, place.y);
@@ -133,8 +131,7 @@ rc_copy rc_copy_of_move(const rc_chart *chart, float x, float y, float a, float 
 
 rc_copy rc_copy_on_rails(const rc_rails *rails, const rc_chart *chart, float tolerance, float x,
                          float y, float to_x, float to_y) {
-  rc_chart flat = *chart;
-  flat.raised = false;
+  rc_chart flat = rc_chart_flat(*chart);
   rc_copy move = rc_copy_between(&flat, x, y, to_x, to_y);
   float off = move.b * rails->a - move.a * rails->b;
   float too_far = off > tolerance ? off - tolerance : off < -tolerance ? off + tolerance : 0.f;

@@ -132,8 +132,7 @@ static rc_copy shifted_by_period(const scan *s, const pixel_state *state, rc_cop
                                  rc_copy period) {
   const rc_level *level = s->level;
   if (!level->chart.raised) return (rc_copy){from.a + period.a, from.b + period.b, 0.f};
-  rc_chart flat = level->chart;
-  flat.raised = false;
+  rc_chart flat = rc_chart_flat(level->chart);
   rc_place place = rc_query_place(level, &state->query, from);
   rc_place moved = rc_copy_place(&flat, period, place.x, place.y);
   return moved.beyond ? from : copy_from(s, state, moved.x, moved.y);
