@@ -116,8 +116,9 @@ def errors(host):
                                  "(gimp-edit-copy (vector d))"
                                  "(define f (vector-ref (car (gimp-edit-paste d TRUE)) 0))")
            + host.fill(layer="f", **frontal), "floating selection")
-    text = ('(gimp-text-layer-new i "a" "Sans" 20 UNIT-PIXEL)' if host.name == "2" else
-            '(gimp-text-layer-new i "a" (car (gimp-context-get-font)) 20 UNIT-PIXEL)')
+    # GIMP 3 loads fonts beside all else: the list waits for them, the context may have none yet.
+    font = '"Sans"' if host.name == "2" else '(vector-ref (car (gimp-fonts-get-list "Sans")) 0)'
+    text = f'(gimp-text-layer-new i "a" {font} 20 UNIT-PIXEL)'
     yield ("a text layer", f"(define t (car {text}))(gimp-image-insert-layer i t 0 0)" + select
            + host.fill(layer="t", **frontal), "Discard Text Information")
     yield ("beyond the horizon", select + host.fill(orientation="angles", slant=130),
