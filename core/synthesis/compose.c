@@ -12,6 +12,10 @@
  * pixels have one copy, those with contrast would else be levelled by those without. */
 #define WHOLE_EDGE 128.f
 #define LEAST_EDGE 1.f
+/* Where the hole cuts through a thing that no copy continues, its colour must not shine into the
+ * hole: an edge to a known pixel that the copy misses by more than so many times the mean counts
+ * less, by the fourth power. Texture misses by less than three times the mean. */
+#define MISSES_BY 4.f
 /* But no farther than this part of the hole, or a small one would have no tone of its own. */
 #define REACH_OF_HOLE .2f
 #define LEAST_REACH_PX 7.f
@@ -21,6 +25,11 @@
 /* Sources finer than this many px per px, the mean of both directions, are sampled one level
  * coarser. */
 #define MIP_AT 1.6f
+
+typedef struct row_sums {
+  double change, changes; /* of squares; how many */
+  double miss, misses;
+} row_sums;
 
 typedef struct composition {
   const rc_level *level;
@@ -36,7 +45,8 @@ typedef struct composition {
   float *drive;      /* right-hand side of the join */
   uint8_t *edges[4]; /* what those to a pixel's neighbours count; 0: there is none */
   float mean_change; /* square between neighbours, sum over channels */
-  double *changes;   /* of each row: their sum and how many */
+  float mean_miss;   /* how far copies are from the known pixels beside them, a distance */
+  row_sums *sums;
   float screening, relaxation;
 } composition;
 
@@ -86,31 +96,53 @@ static float change(const composition *c, const float *from, const float *to) {
   return sum;
 }
 
-static void sum_changes(void *user, int item, int thread) {
+static bool is_fixed(const rc_level *level, int x, int y) {
+  if (!rc_inside(level->width, level->height, x, y)) return false;
+  return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & (RC_TARGET | RC_KNOWN)) ==
+         RC_KNOWN;
+}
+
+static void sum_misses(const composition *c, int x, int y, row_sums *sums) {
+  rc_copy own = c->level->field[rc_level_at(c->level, x, y)];
+  float there[3];
+  if (isnan(own.a)) return;
+  for (int e = 0; e < 4; e++) {
+    int nx = x + step_x[e], ny = y + step_y[e];
+    if (!is_fixed(c->level, nx, ny)) continue;
+    copy_value(c, own, nx, ny, there);
+    sums->miss += sqrt((double)change(c, there, rc_pixel(c->residual, nx, ny))), sums->misses++;
+  }
+}
+
+static void sum_row(void *user, int item, int thread) {
   const composition *c = user;
   const rc_level *level = c->level;
-  double *changes = c->changes + 2 * (size_t)item;
+  row_sums sums = {0, 0, 0, 0};
   int y = level->box.y0 + item;
   (void)thread;
-  changes[0] = changes[1] = 0;
   for (int x = level->box.x0; x < level->box.x1; x++) {
     if (!rc_level_is_target(level, x, y)) continue;
     const float *value = c->value + rc_level_at(level, x, y) * (size_t)c->channels;
     const float *below = value + (size_t)level->box_w * (size_t)c->channels;
     if (x + 1 < level->box.x1 && rc_level_is_target(level, x + 1, y))
-      changes[0] += (double)change(c, value, value + c->channels), changes[1]++;
+      sums.change += (double)change(c, value, value + c->channels), sums.changes++;
     if (y + 1 < level->box.y1 && rc_level_is_target(level, x, y + 1))
-      changes[0] += (double)change(c, value, below), changes[1]++;
+      sums.change += (double)change(c, value, below), sums.changes++;
+    sum_misses(c, x, y, &sums);
   }
+  c->sums[item] = sums;
 }
 
-static recede_status set_mean_change(rc_context *context, composition *c) {
-  double sum = 0, count = 0;
-  RC_TRY(RC_NEW(context, 2 * (size_t)c->level->box_h, &c->changes));
-  RC_TRY(rc_parallel(context, c->level->box_h, sum_changes, c));
-  for (int row = 0; row < c->level->box_h; row++)
-    sum += c->changes[2 * row], count += c->changes[2 * row + 1];
-  c->mean_change = count > 0 ? (float)(sum / count) : 0.f;
+static recede_status set_means(rc_context *context, composition *c) {
+  row_sums all = {0, 0, 0, 0};
+  RC_TRY(RC_NEW(context, c->level->box_h, &c->sums));
+  RC_TRY(rc_parallel(context, c->level->box_h, sum_row, c));
+  for (int row = 0; row < c->level->box_h; row++) {
+    all.change += c->sums[row].change, all.changes += c->sums[row].changes;
+    all.miss += c->sums[row].miss, all.misses += c->sums[row].misses;
+  }
+  c->mean_change = all.changes > 0 ? (float)(all.change / all.changes) : 0.f;
+  c->mean_miss = all.misses > 0 ? (float)(all.miss / all.misses) : 0.f;
   return RECEDE_OK;
 }
 
@@ -119,6 +151,15 @@ static uint8_t count_of(const composition *c, const float *from, const float *to
   float changed = change(c, from, to);
   float part = c->mean_change > 0.f ? changed / c->mean_change : 0.f;
   float counts = WHOLE_EDGE / (1.f + part);
+  return (uint8_t)(counts > LEAST_EDGE ? counts : LEAST_EDGE);
+}
+
+/* Of the edge to a known pixel, of which the copy says what is there. */
+static uint8_t count_of_fixed(const composition *c, const float *value, const float *there,
+                              const float *fixed) {
+  float counts = (float)count_of(c, value, there), most = MISSES_BY * c->mean_miss;
+  float missed = most > 0.f ? change(c, fixed, there) / (most * most) : 0.f;
+  if (missed > 1.f) counts /= missed * missed;
   return (uint8_t)(counts > LEAST_EDGE ? counts : LEAST_EDGE);
 }
 
@@ -132,7 +173,7 @@ static uint8_t add_edge(const composition *c, int x, int y, int nx, int ny, cons
   if (!rc_level_is_target(level, nx, ny)) { /* a known pixel, fixed; the copy's own gradient */
     const float *fixed = rc_pixel(c->residual, nx, ny);
     copy_value(c, own, nx, ny, there);
-    uint8_t counts = count_of(c, value, there);
+    uint8_t counts = count_of_fixed(c, value, there, fixed);
     for (int k = 0; k < c->channels; k++) drive[k] += (float)counts * (fixed[k] - there[k]);
     return counts;
   }
@@ -229,7 +270,7 @@ static recede_status solve_join(rc_context *context, const rc_join *join, compos
   RC_TRY(RC_NEW_ZERO(context, count, &c->drive));
   for (int e = 0; e < 4; e++)
     RC_TRY(RC_NEW_ZERO(context, (size_t)rows * 2 * (size_t)c->half_w, &c->edges[e]));
-  RC_TRY(set_mean_change(context, c));
+  RC_TRY(set_means(context, c));
   /* Red-black over-relaxation by what is best for whole edges: their Jacobi radius is */
   float of_hole = REACH_OF_HOLE * (float)(rows < c->level->box_w ? rows : c->level->box_w);
   float reach_px = fminf(join->reach_px, fmaxf(of_hole, LEAST_REACH_PX));

@@ -121,10 +121,35 @@ static void tiles_keep_their_tone(void) {
   task_clear(&t);
 }
 
+/* A white post that is no source ends in the hole: it does not shine into it. */
+static void cut_things_do_not_shine(void) {
+  const area hole = {100, 100, 220, 200}, below = {146, 102, 162, 112};
+  const area left = {106, 102, 130, 112};
+  picture post = picture_new(320, 240, 3, RECEDE_U8);
+  for (int y = 0; y < 240; y++)
+    for (int x = 0; x < 320; x++)
+      for (int k = 0; k < 3; k++) {
+        bool white = x >= 150 && x < 158 && y < 130;
+        picture_set(&post, x, y, k, white ? .95f : (float)(.3 + .1 * noise_at(x, y, 11)));
+      }
+  task t = task_new(post, "orientation=frontal");
+  task_hole(&t, hole);
+  t.source = picture_new(320, 240, 1, RECEDE_U8);
+  picture_fill(&t.source, (area){0, 0, 320, 240}, 1);
+  picture_fill(&t.source, (area){140, 0, 168, 240}, 0);
+  task_succeeds(&t);
+  double near = moments_of(&t.result, &t.mask, true, below, 0).mean;
+  double far = moments_of(&t.result, &t.mask, true, left, 0).mean;
+  g_test_message("below the post %.4f, beside it %.4f", near, far);
+  g_assert_cmpfloat(near - far, <, .03);
+  task_clear(&t);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/tone/drift", drift_leaves_no_seam);
   g_test_add_func("/tone/sky", sky_tints_no_floor);
   g_test_add_func("/tone/tiles", tiles_keep_their_tone);
+  g_test_add_func("/tone/cut", cut_things_do_not_shine);
   return g_test_run();
 }
