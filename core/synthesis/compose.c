@@ -12,13 +12,13 @@
  * pixels have one copy, those with contrast would else be levelled by those without. */
 #define WHOLE_EDGE 128.f
 #define LEAST_EDGE 1.f
-/* Where the hole cuts through a thing that no copy continues, its colour must not shine into the
- * hole: an edge to a known pixel that the copy misses by more than so many times the mean counts
- * less, by the fourth power. Texture misses by less than three times the mean. */
-#define MISSES_BY 4.f
 /* But no farther than this part of the hole, or a small one would have no tone of its own. */
 #define REACH_OF_HOLE .2f
 #define LEAST_REACH_PX 7.f
+/* Where the hole cuts through a thing that no copy continues, its colour must not shine into the
+ * hole: an edge to a known pixel that the copy misses by more than so many times the mean counts
+ * less, by the fourth power. From twice the mean on, by the square, texture lost its tone, too. */
+#define MISSES_BY 4.f
 /* Half sweeps, red or black, that are done at once, and the rows of a band: a few hundred KB. */
 #define AT_ONCE 16
 #define BAND_ROWS 64
