@@ -13,6 +13,8 @@ bind() {
 }
 
 mount --make-rprivate /
+# A mount of its own, so that this script can be called again inside.
+mount --bind "$folder" "$folder"
 mount -t proc proc "$folder/proc"
 mount --rbind /dev "$folder/dev"
 mount -t tmpfs -o mode=1777 tmpfs "$folder/tmp"
