@@ -174,11 +174,11 @@ typedef struct recede_params {
   double paper_histogram_gain; /* eq. 9's sum times this; -1: by paper_literal */
   double paper_exponent;       /* r of eq. 5 */
   int paper_iterations;        /* of one sweep, at most; 0: by method */
-  int engine_tone, engine_alike, engine_periods, engine_lines, engine_rails, engine_whole,
-      engine_coherence, engine_usage, engine_confidence, engine_composition, engine_join,
-      engine_detail, engine_spline; /* stages of the plane engine, 1 = on */
-  int engine_starts;                /* trials of the coarsest level; 0: by quality */
-  int engine_iterations;            /* EM iterations at the coarsest level; 0: by quality */
+  int engine_near, engine_tone, engine_alike, engine_periods, engine_lines, engine_rails,
+      engine_whole, engine_coherence, engine_usage, engine_confidence, engine_composition,
+      engine_join, engine_detail, engine_spline; /* stages of the plane engine, 1 = on */
+  int engine_starts;                             /* trials of the coarsest level; 0: by quality */
+  int engine_iterations; /* EM iterations at the coarsest level; 0: by quality */
 } recede_params;
 
 typedef enum recede_param_type {
@@ -277,7 +277,7 @@ RECEDE_API recede_job *recede_job_new(const recede_host *host);
 /* The views stay the caller's and must live until the job is freed or another is set.
  * mask and source: one channel, the image's size; the mask's value is how much of the fill is
  * blended in (any value above 0 is filled and never a source); source above one half may be copied
- * from; source NULL = everything. */
+ * from; source NULL = everything. Method plane copies from what is near, while that is enough. */
 RECEDE_API recede_status recede_job_set_image(recede_job *job, const recede_view *image);
 RECEDE_API recede_status recede_job_set_mask(recede_job *job, const recede_view *mask);
 RECEDE_API recede_status recede_job_set_source(recede_job *job, const recede_view *source);

@@ -1,6 +1,6 @@
 /* Method plane: the only file that knows the order of the stages.
- * tone -> pyramid -> sources that look alike -> lines and rails -> start -> (search <-> vote) per
- * level, coarse to fine -> composition -> detail.
+ * sources near -> tone -> pyramid -> sources that look alike -> lines and rails -> start -> (search
+ * <-> vote) per level, coarse to fine -> composition -> detail.
  */
 #include <math.h>
 
@@ -13,6 +13,7 @@
 #include "synthesis/descent.h"
 #include "synthesis/detail.h"
 #include "synthesis/iterate.h"
+#include "synthesis/near.h"
 #include "synthesis/problem.h"
 #include "synthesis/surface.h"
 
@@ -196,6 +197,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                    context->host.kernel);
   RC_TRY(rc_stage(context, "tone", .05, .07));
   rc_band band = own_scales(problem);
+  if (params->engine_near && !problem->synthesis)
+    RC_TRY(rc_keep_near(context, &problem->flags, &problem->target, &band));
   rc_tone_fit(filled, &problem->flags, &band, params->engine_tone, &tone);
   RC_TRY(rc_tone_apply(context, &tone, &problem->flags, RC_KNOWN, -1, filled));
   RC_TRY(rc_stage(context, "pyramid", .07, .1));

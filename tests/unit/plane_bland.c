@@ -59,19 +59,25 @@ static picture pebbles_and_wall(void) {
   return p;
 }
 
+/* The hole filled; copied only from column source_x0 on, 0: from everywhere. */
+static task filled(picture image, area hole, const char *settings, int seed, int source_x0) {
+  task t = task_new(image, settings);
+  t.params.seed = seed;
+  task_hole(&t, hole);
+  if (source_x0) {
+    t.source = picture_new(image.view.width, image.view.height, 1, RECEDE_U8);
+    picture_fill(&t.source, (area){source_x0, 0, image.view.width, image.view.height}, 1);
+  }
+  task_succeeds(&t);
+  return t;
+}
+
 /* The part of a hole among the pebbles that shows the wall; from_wall: which alone is source. */
 static double wall_in_hole(const char *settings, bool from_wall) {
   const area hole = {50, 70, 150, 170};
   double sum = 0;
   for (int seed = 0; seed < 2; seed++) {
-    task t = task_new(pebbles_and_wall(), settings);
-    t.params.seed = seed;
-    task_hole(&t, hole);
-    if (from_wall) {
-      t.source = picture_new(320, 240, 1, RECEDE_U8);
-      picture_fill(&t.source, (area){200, 0, 320, 240}, 1);
-    }
-    task_succeeds(&t);
+    task t = filled(pebbles_and_wall(), hole, settings, seed, from_wall ? 200 : 0);
     for (int y = hole.y0; y < hole.y1; y++)
       for (int x = hole.x0; x < hole.x1; x++)
         sum += fabs(picture_get(&t.result, x, y, 0) - .51) < .02 ? 1. / 20000 : 0;
@@ -112,9 +118,48 @@ static void something_stays(void) {
   task_clear(&t);
 }
 
+/* The same pebbles all over the picture; from column 200 on with a grain that the tone of none
+ * betrays. */
+static picture near_and_far(void) {
+  picture p = picture_new(640, 240, 1, RECEDE_U8);
+  for (int y = 0; y < 240; y++)
+    for (int x = 0; x < 640; x++) {
+      double pebble = .3 + .4 * noise_at((x + y / 9 * 5) / 9, y / 9, 3);
+      double grain = x < 200 ? 0 : (x + y) % 2 ? .05 : -.05;
+      picture_set(&p, x, y, 0, (float)(pebble + grain));
+    }
+  return p;
+}
+
+/* The part of a hole near the left side that is grainy: .13 of pebbles without grain (their edges),
+ * .64 of those with it. */
+static double far_in_hole(const char *settings, bool from_far) {
+  const area hole = {60, 90, 110, 140};
+  double sum = 0;
+  for (int seed = 0; seed < 2; seed++) {
+    task t = filled(near_and_far(), hole, settings, seed, from_far ? 400 : 0);
+    for (int y = hole.y0; y < hole.y1; y++)
+      for (int x = hole.x0 + 1; x < hole.x1 - 1; x++) {
+        float beside = picture_get(&t.result, x - 1, y, 0) + picture_get(&t.result, x + 1, y, 0);
+        sum += fabsf(picture_get(&t.result, x, y, 0) - beside / 2) > .05f ? 1. / 4800 : 0;
+      }
+    task_clear(&t);
+  }
+  g_test_message("%s: %.3f of the hole is grainy", settings, sum);
+  return sum;
+}
+
+/* What is near goes on as the hole does, unless somebody says otherwise. */
+static void near_goes_on(void) {
+  g_assert_cmpfloat(far_in_hole("orientation=frontal engine-near=0", false), >, .4);
+  g_assert_cmpfloat(far_in_hole("orientation=frontal", false), <, .2);
+  g_assert_cmpfloat(far_in_hole("orientation=frontal", true), >, .55);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/bland/flowers", flowers_go_on);
+  g_test_add_func("/bland/near", near_goes_on);
   g_test_add_func("/bland/walls", walls_stay_out);
   g_test_add_func("/bland/far", something_stays);
   return g_test_run();
