@@ -69,6 +69,13 @@ static recede_status hole_width(rc_context *context, const rc_mask *flags, int *
   return RECEDE_OK;
 }
 
+static recede_status keep_near(rc_context *context, const rc_problem *problem,
+                               const rc_band *band) {
+  int width;
+  RC_TRY(hole_width(context, &problem->flags, &width));
+  return rc_keep_near(context, &problem->flags, &problem->target, band, width);
+}
+
 static recede_status build_pyramid(rc_context *context, const rc_problem *problem,
                                    rc_image *residual, rc_descent *e) {
   int width;
@@ -197,8 +204,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                    context->host.kernel);
   RC_TRY(rc_stage(context, "tone", .05, .07));
   rc_band band = own_scales(problem);
-  if (params->engine_near && !problem->synthesis)
-    RC_TRY(rc_keep_near(context, &problem->flags, &problem->target, &band));
+  if (params->engine_near && !problem->synthesis) RC_TRY(keep_near(context, problem, &band));
   rc_tone_fit(filled, &problem->flags, &band, params->engine_tone, &tone);
   RC_TRY(rc_tone_apply(context, &tone, &problem->flags, RC_KNOWN, -1, filled));
   RC_TRY(rc_stage(context, "pyramid", .07, .1));

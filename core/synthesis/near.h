@@ -7,10 +7,10 @@
 #include "image/image.h"
 #include "image/line.h"
 
-/* Takes RC_SOURCE from pixels outside a window about target, the bounding box of RC_TARGET. The
- * window is wide enough to hold, if the picture does, so many sources of the hole's own scales
- * (within band) as a fill needs. */
+/* Takes RC_SOURCE from pixels outside a window about target, the bounding box of RC_TARGET, whose
+ * hole is hole_width px across at its widest. The window is wide enough to hold, if the picture
+ * does, as many places for patches of the hole's own scales (band) as a fill needs. */
 recede_status rc_keep_near(rc_context *context, const rc_mask *flags, const rc_box *target,
-                           const rc_band *band);
+                           const rc_band *band, int hole_width);
 
 #endif

@@ -156,10 +156,27 @@ static void near_goes_on(void) {
   g_assert_cmpfloat(far_in_hole("orientation=frontal", true), >, .55);
 }
 
+/* Whatever may be copied lies 120 px away all around: the window holds room for patches. */
+static void moat_is_crossed(void) {
+  picture p = picture_new(640, 480, 1, RECEDE_U8);
+  for (int y = 0; y < 480; y++)
+    for (int x = 0; x < 640; x++) picture_set(&p, x, y, 0, (float)noise_at(x / 9, y / 9, 3));
+  task t = task_new(p, "orientation=frontal quality=draft");
+  task_hole(&t, (area){290, 210, 350, 270});
+  t.source = picture_new(640, 480, 1, RECEDE_U8);
+  picture_fill(&t.source, (area){0, 0, 640, 480}, 1);
+  picture_fill(&t.source, (area){170, 90, 470, 390}, 0);
+  task_succeeds(&t);
+  double known = moments_of(&t.image, &t.mask, false, everything, 0).deviation;
+  g_assert_cmpfloat(moments_of(&t.result, &t.mask, true, everything, 0).deviation, >, .7 * known);
+  task_clear(&t);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/bland/flowers", flowers_go_on);
   g_test_add_func("/bland/near", near_goes_on);
+  g_test_add_func("/bland/moat", moat_is_crossed);
   g_test_add_func("/bland/walls", walls_stay_out);
   g_test_add_func("/bland/far", something_stays);
   return g_test_run();
