@@ -224,10 +224,11 @@ recede_status rc_match_detail(rc_context *context, const rc_level *level, rc_ima
   rc_block *mark = rc_mark(context);
   b.width = b.box.x1 - b.box.x0, b.height = b.box.y1 - b.box.y0;
   size_t row = (size_t)b.width * (size_t)b.channels, values = row * (size_t)b.height;
+  size_t strip_rows = b.height < STRIP_ROWS ? (size_t)b.height : STRIP_ROWS;
   RC_TRY(RC_NEW(context, (size_t)level->width * (size_t)level->height, &depth));
   RC_TRY(RC_NEW(context, values, &scratch));
-  RC_TRY(RC_NEW(context, STRIP_ROWS * b.width, &s.square));
-  RC_TRY(RC_NEW(context, STRIP_ROWS * b.width, &s.group));
+  RC_TRY(RC_NEW(context, strip_rows * (size_t)b.width, &s.square));
+  RC_TRY(RC_NEW(context, strip_rows * (size_t)b.width, &s.group));
   s.fine = rc_pixel(residual, b.box.x0, b.box.y0);
   s.fine_row = (size_t)residual->width * (size_t)b.channels;
   for (int n = 0; n < BANDS; n++) {

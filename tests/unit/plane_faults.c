@@ -341,6 +341,8 @@ static void peak_within_the_estimate(void) {
   check_memory(1000, 700, (area){500, 400, 540, 430}, 3, qualities[0]);
   check_memory(1000, 700, (area){50, 300, 950, 330}, 1, qualities[0]);
   check_memory(1000, 700, (area){300, 200, 700, 500}, 3, qualities[0]);
+  check_memory(60000, 1, (area){300, 0, 59700, 1}, 3, qualities[0]);
+  check_memory(1, 60000, (area){0, 300, 1, 59700}, 3, qualities[0]);
 }
 
 /* One mebibyte less than the estimate is refused, and both numbers are said. */
