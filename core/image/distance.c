@@ -1,6 +1,9 @@
 #include "image/distance.h"
 
 #include <stddef.h>
+#include <string.h>
+
+#include "image/image.h"
 
 static int least_of(int a, int b) { return a < b ? a : b; }
 static uint8_t one_more(int v) { return (uint8_t)(v < 255 ? v + 1 : 255); }
@@ -30,15 +33,40 @@ static void along_row(int width, int step, int edge, uint8_t *distance) {
   }
 }
 
-static void sweep(int width, int height, int step, int edge, uint8_t *distance) {
-  for (int i = 0, y = step > 0 ? 0 : height - 1; i < height; i++, y += step) {
-    uint8_t *row = distance + (size_t)y * (size_t)width;
+/* A picture's part, its rows so many pixels apart. */
+typedef struct part {
+  int width, height;
+  ptrdiff_t stride;
+} part;
+
+static void sweep(part of, int step, int edge, uint8_t *distance) {
+  for (int i = 0, y = step > 0 ? 0 : of.height - 1; i < of.height; i++, y += step) {
+    uint8_t *row = distance + y * of.stride;
     if (i)
-      from_row(step > 0 ? row - width : row + width, width, edge, row);
+      from_row(row - step * of.stride, of.width, edge, row);
     else if (!edge)
-      for (int x = 0; x < width; x++) row[x] = row[x] ? 1 : 0;
-    along_row(width, step, edge, row);
+      for (int x = 0; x < of.width; x++) row[x] = row[x] ? 1 : 0;
+    along_row(of.width, step, edge, row);
   }
+}
+
+/* What has a distance, and a pixel more on each side where the picture goes on: all else is 0, and
+ * a hole is a small part of its picture. */
+static rc_box part_with_any(const uint8_t *distance, int width, int height) {
+  rc_box box = {width, height, 0, 0};
+  for (int y = 0; y < height; y++) {
+    const uint8_t *row = distance + (size_t)y * (size_t)width;
+    const uint8_t *first = memchr(row, 255, (size_t)width);
+    if (!first) continue;
+    int x0 = (int)(first - row), x1 = width;
+    while (!row[x1 - 1]) x1--;
+    if (!box.y1) box.y0 = y;
+    box.y1 = y + 1;
+    box.x0 = x0 < box.x0 ? x0 : box.x0, box.x1 = x1 > box.x1 ? x1 : box.x1;
+  }
+  box.x0 -= box.x0 > 0, box.y0 -= box.y0 > 0;
+  box.x1 += box.x1 < width, box.y1 += box.y1 < height;
+  return box;
 }
 
 void rc_distance_inside(const uint8_t *flags, uint8_t flag, int width, int height,
@@ -46,6 +74,10 @@ void rc_distance_inside(const uint8_t *flags, uint8_t flag, int width, int heigh
   size_t count = (size_t)width * (size_t)height;
   int edge = outside_ends ? 0 : 255;
   for (size_t i = 0; i < count; i++) distance[i] = flags[i] & flag ? 255 : 0;
-  sweep(width, height, 1, edge, distance);
-  sweep(width, height, -1, edge, distance);
+  rc_box box = part_with_any(distance, width, height);
+  part of = {box.x1 - box.x0, box.y1 - box.y0, width};
+  if (of.width <= 0) return;
+  distance += (size_t)box.y0 * (size_t)width + (size_t)box.x0;
+  sweep(of, 1, edge, distance);
+  sweep(of, -1, edge, distance);
 }

@@ -213,10 +213,15 @@ static recede_status enough_left(rc_context *context, const comparison *c, const
   return RECEDE_OK;
 }
 
+/* One compared place stands for a square of pixels. */
 static void take_source(const comparison *c, const rc_mask *flags, int shift) {
+  int side = c->step << shift;
   for (int y = 0; y < flags->height; y++)
-    for (int x = 0; x < flags->width; x++)
-      if (is_unlike(c, x >> shift, y >> shift)) *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
+    for (int x0 = 0; x0 < flags->width; x0 += side) {
+      if (!is_unlike(c, x0 >> shift, y >> shift)) continue;
+      int x1 = x0 + side < flags->width ? x0 + side : flags->width;
+      for (int x = x0; x < x1; x++) *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
+    }
 }
 
 recede_status rc_keep_alike(rc_context *context, const rc_band *band, const rc_image *images,

@@ -72,6 +72,7 @@ static recede_status hole_width(rc_context *context, const rc_mask *flags, int *
 static recede_status keep_near(rc_context *context, const rc_problem *problem,
                                const rc_band *band) {
   int width;
+  if (rc_all_is_near(&problem->flags, &problem->target)) return RECEDE_OK;
   RC_TRY(hole_width(context, &problem->flags, &width));
   return rc_keep_near(context, &problem->flags, &problem->target, band, width);
 }

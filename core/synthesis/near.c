@@ -42,8 +42,7 @@ static int distance_to(const rc_box *box, int x, int y) {
   return dx > dy ? dx : dy;
 }
 
-/* The whole picture is no more than the window should be. */
-static bool all_is_near(const rc_mask *flags, const rc_box *target) {
+bool rc_all_is_near(const rc_mask *flags, const rc_box *target) {
   uint64_t pixels = (uint64_t)flags->width * (uint64_t)flags->height, hole = 0;
   for (int y = target->y0; y < target->y1; y++)
     for (int x = target->x0; x < target->x1; x++) hole += *rc_flag(flags, x, y) & RC_TARGET ? 1 : 0;
@@ -92,7 +91,6 @@ recede_status rc_keep_near(rc_context *context, const rc_mask *flags, const rc_b
   window v = {.flags = flags, .target = target, .band = band};
   uint8_t *distance;
   ring *rings;
-  if (all_is_near(flags, target)) return RECEDE_OK;
   rc_block *mark = rc_mark(context);
   v.room = (int)fmin(room, MOST_ROOM_PX);
   for (int i = 0; i < SLICES; i++)

@@ -7,6 +7,9 @@
 #include "image/image.h"
 #include "image/line.h"
 
+/* The whole picture is no more than the window should be: there is nothing to take. */
+bool rc_all_is_near(const rc_mask *flags, const rc_box *target);
+
 /* Takes RC_SOURCE from pixels outside a window about target, the bounding box of RC_TARGET, whose
  * hole is hole_width px across at its widest. The window is wide enough to hold, if the picture
  * does, as many places for patches of the hole's own scales (band) as a fill needs. */

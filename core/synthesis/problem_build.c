@@ -144,10 +144,18 @@ static void apply_horizon(rc_context *context, rc_problem *problem, double least
     }
 }
 
+/* Target that has target, or the picture's end, on its four sides. */
+static bool is_inner(const rc_mask *flags, int x, int y) {
+  const uint8_t *flag = rc_flag(flags, x, y);
+  ptrdiff_t row = flags->width;
+  return (x == 0 || flag[-1] & RC_TARGET) && (x == flags->width - 1 || flag[1] & RC_TARGET) &&
+         (y == 0 || flag[-row] & RC_TARGET) && (y == flags->height - 1 || flag[row] & RC_TARGET);
+}
+
 static void distrust_ring(rc_mask *flags) {
   for (int y = 0; y < flags->height; y++)
     for (int x = 0; x < flags->width; x++) {
-      if (!(*rc_flag(flags, x, y) & RC_TARGET)) continue;
+      if (!(*rc_flag(flags, x, y) & RC_TARGET) || is_inner(flags, x, y)) continue;
       for (int dy = -UNTRUSTED_RING_PX; dy <= UNTRUSTED_RING_PX; dy++)
         for (int dx = -UNTRUSTED_RING_PX; dx <= UNTRUSTED_RING_PX; dx++)
           if (rc_inside(flags->width, flags->height, x + dx, y + dy))
