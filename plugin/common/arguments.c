@@ -20,7 +20,7 @@ static const rp_argument height_row = {
 static const rp_argument source_row = {
     "source",
     N_("Cop_y from"),
-    N_("Where to copy from: the light parts of a channel or layer; none: everywhere outside the "
+    N_("Where to copy from: the light parts of a channel or layer; none: around the "
        "selection"),
     "",
     RP_DRAWABLE,

@@ -110,7 +110,7 @@ static gboolean of_this_image(gint32 image, gint32 item, gpointer user) {
 static void add_drawable(dialog *d, int index) {
   GtkWidget *combo = gimp_drawable_combo_box_new(of_this_image, d);
   gimp_int_combo_box_prepend(GIMP_INT_COMBO_BOX(combo), GIMP_INT_STORE_VALUE, -1,
-                             GIMP_INT_STORE_LABEL, _("Everywhere outside the selection"), -1);
+                             GIMP_INT_STORE_LABEL, _("Around the selection"), -1);
   attach(d, index, _(row_of(d, index)->label), combo);
   d->controls[index] = G_OBJECT(combo);
   gimp_int_combo_box_connect(GIMP_INT_COMBO_BOX(combo), (gint)d->settings->values[index],

@@ -55,7 +55,7 @@ static GtkWidget *source_control(dialog *d) {
   GtkWidget *label = gtk_label_new_with_mnemonic(_(row->label));
   d->source = gimp_drawable_combo_box_new(of_this_image, d, NULL);
   gimp_int_combo_box_prepend(GIMP_INT_COMBO_BOX(d->source), GIMP_INT_STORE_VALUE, -1,
-                             GIMP_INT_STORE_LABEL, _("Everywhere outside the selection"), -1);
+                             GIMP_INT_STORE_LABEL, _("Around the selection"), -1);
   gimp_int_combo_box_connect(GIMP_INT_COMBO_BOX(d->source),
                              (gint)rp_settings_get(d->settings, "source"), G_CALLBACK(on_source), d,
                              NULL);
