@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "base/random.h"
+#include "synthesis/boundary.h"
 #include "synthesis/coarsest.h"
 #include "synthesis/lock.h"
 #include "synthesis/rest.h"
@@ -11,6 +12,9 @@
 
 /* Each px deeper in the hole counts 1.3 times less; 1.15 is too trusting. */
 #define CONFIDENCE_FALLOFF 1.3f
+
+/* Half a side from a boundary, px of the finest level. */
+#define BESIDE_PX 8.f
 
 /* The finest level that is searched: what it settles on is composed. */
 static int last_searched(const rc_descent *e) { return rc_iterations_at(e, 0) ? 0 : 1; }
@@ -43,6 +47,8 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
         rc_stage(context, coarsest ? "start" : "search", coarsest ? .1 : from, exponent ? to : .8));
     RC_TRY(rc_level_new(context, &e->images[exponent], &e->flags[exponent], &chart, gamma, e->gain,
                         coarsest ? NULL : &coarser.ranges, &level));
+    level.boundary = rc_boundary_coarser(e->boundary, exponent);
+    level.beside_px = BESIDE_PX / (float)(1 << exponent);
     if (!coarsest) {
       rc_field_from_coarser(&level, &coarser);
       rc_level_free_pixels(context, &coarser);

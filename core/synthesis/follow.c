@@ -41,7 +41,7 @@ static void set_frame(frame *f) {
 }
 
 static bool source_at(const void *user, int x, int y, float *value) {
-  const rc_brightness *picture = user;
+  const rc_seen *picture = user;
   if (!rc_inside(picture->flags->width, picture->flags->height, x, y)) return false;
   size_t at = (size_t)y * (size_t)picture->flags->width + (size_t)x;
   *value = picture->value[at];
@@ -154,7 +154,7 @@ static float follow_both(const frame *f, float split, const rc_profile *own_a,
   return sum / RC_LINE_PIECES;
 }
 
-bool rc_follow(const rc_brightness *picture, const rc_chart *chart, bool alone, rc_crossing *line) {
+bool rc_follow(const rc_seen *picture, const rc_chart *chart, bool alone, rc_crossing *line) {
   static const float splits[] = {1, 0, .5f, .25f, .75f};
   rc_profile own_a, own_b;
   float most = LEAST_KEPT;

@@ -10,15 +10,9 @@
 /* A line's own profile is that of so many px. */
 #define RC_PROFILE_NEAR_PX 14
 
-/* One level of the picture, brightness alone. */
-typedef struct rc_brightness {
-  const rc_mask *flags;
-  const float *value;
-} rc_brightness;
-
 /* Moves the line's ends to where it meets the hole and sets its pieces' sources. False: it fades or
  * leaves the picture before the hole could be crossed; or, alone, no other vouching for it, it does
  * not go on for long. chart: of the same level. */
-bool rc_follow(const rc_brightness *picture, const rc_chart *chart, bool alone, rc_crossing *line);
+bool rc_follow(const rc_seen *picture, const rc_chart *chart, bool alone, rc_crossing *line);
 
 #endif

@@ -9,19 +9,28 @@
 #define LEAST_NEAR_PX 4
 #define LEAST_PIECE_PX 2
 
-static bool value_at(const rc_level *level, int x, int y, int wanted, float *value) {
+/* A level as its line was seen. */
+typedef struct view {
+  const rc_level *level;
+  const rc_crossing *line;
+} view;
+
+static bool value_at(const view *v, int x, int y, int wanted, float *value) {
+  const rc_level *level = v->level;
   if (!rc_inside(level->width, level->height, x, y)) return false;
   size_t at = (size_t)y * (size_t)level->width + (size_t)x;
-  *value = rc_pixel_brightness(level->pixels[at]);
+  *value = 0;
+  for (int k = 0; k < 3; k++)
+    *value += v->line->axis[k] * (float)(level->pixels[at] >> 8 * k & 255);
   return (level->flags[at] & wanted) != 0;
 }
 
-static bool outside(const void *level, int x, int y, float *value) {
-  return value_at(level, x, y, RC_SOURCE, value);
+static bool outside(const void *user, int x, int y, float *value) {
+  return value_at(user, x, y, RC_SOURCE, value);
 }
 
-static bool everywhere(const void *level, int x, int y, float *value) {
-  return value_at(level, x, y, RC_KNOWN | RC_TARGET, value);
+static bool everywhere(const void *user, int x, int y, float *value) {
+  return value_at(user, x, y, RC_KNOWN | RC_TARGET, value);
 }
 
 static double line_kept(const rc_level *level, const rc_crossing *line, int exponent) {
@@ -32,7 +41,8 @@ static double line_kept(const rc_level *level, const rc_crossing *line, int expo
   float length = sqrtf(dx * dx + dy * dy), piece_px = length / RC_LINE_PIECES;
   int near = (int)fmaxf(RC_PROFILE_NEAR_PX / unit, LEAST_NEAR_PX);
   int count = (int)fmaxf(piece_px, LEAST_PIECE_PX);
-  rc_ruler ruler = {outside, level, dx / length, dy / length};
+  view v = {level, line};
+  rc_ruler ruler = {outside, &v, dx / length, dy / length};
   if (!rc_profile_mean(&ruler, ax, ay, -RC_PROFILE_FROM_PX, -1, near, &own[0]) ||
       !rc_profile_mean(&ruler, ax + dx, ay + dy, RC_PROFILE_FROM_PX, 1, near, &own[1]))
     return 1;

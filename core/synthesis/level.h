@@ -21,6 +21,12 @@ typedef struct rc_ranges {
   float low[RC_MAX_CLASSES], high[RC_MAX_CLASSES];
 } rc_ranges;
 
+/* A straight line between two textures: a signed distance from it in px is nx x + ny y + at, x and
+ * y relative to the chart's origin; n is a unit vector, or 0 where there is no such line. */
+typedef struct rc_boundary {
+  float nx, ny, at;
+} rc_boundary;
+
 typedef struct rc_level {
   int width, height;
   uint32_t *pixels; /* 0x00BBGGRR; in the target the current guide */
@@ -36,7 +42,9 @@ typedef struct rc_level {
   uint8_t *classes;                    /* class of each box pixel */
   int32_t lane_offset[RC_PATCH_LANES]; /* of each lane of a patch, in pixels */
   rc_ranges ranges;
-  float variance; /* of known pixels, byte^2, mean over channels */
+  rc_boundary boundary;
+  float beside_px; /* what is nearer to it is beside it */
+  float variance;  /* of known pixels, byte^2, mean over channels */
   /* Sources sorted by w: indices of pixels, bin b at order[first[b]] .. order[first[b + 1]]. NULL
    * where nobody asks: the finer levels look nearby, and take the coarsest one's ranges over. */
   int32_t *order;

@@ -38,7 +38,7 @@ typedef struct profile {
 } profile;
 
 typedef struct finder {
-  rc_brightness picture;
+  rc_seen picture;
   const int32_t *border; /* pixels */
   int border_count;
   float (*direction)[2];
@@ -254,17 +254,17 @@ static void keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES
 
 /* Keeps what can be continued, in px of the finest level. One must go on by itself, and vouches for
  * those parallel to it. */
-static void follow(const finder *f, const rc_chart *chart, int exponent,
+static void follow(const rc_seen *seen, const rc_chart *chart, int exponent,
                    rc_crossing lines[RC_MOST_LINES], int *count) {
   int kept = 0;
   bool alone = true;
   for (int i = 0; i < *count && alone; i++) {
     rc_crossing c = lines[i];
-    alone = !rc_follow(&f->picture, chart, true, &c);
+    alone = !rc_follow(seen, chart, true, &c);
   }
   for (int i = 0; i < *count && !alone; i++) {
     rc_crossing c = lines[i];
-    if (rc_follow(&f->picture, chart, false, &c)) lines[kept++] = rc_crossing_coarser(c, -exponent);
+    if (rc_follow(seen, chart, false, &c)) lines[kept++] = rc_crossing_coarser(c, -exponent);
   }
   *count = kept;
 }
@@ -284,9 +284,15 @@ static int collect_border(const rc_mask *flags, int32_t *border) {
   return count;
 }
 
-static void set_brightness(const rc_image *image, float *value) {
-  for (int y = 0; y < image->height; y++)
-    for (int x = 0; x < image->width; x++) *value++ = rc_brightness_at(image, x, y);
+recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *flags,
+                     const float axis[3], rc_seen *seen) {
+  size_t pixels = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;
+  float *value;
+  RC_TRY(RC_NEW_ZERO(context, pixels, &value));
+  for (size_t i = 0; i < pixels; i++)
+    for (size_t k = 0; k < channels; k++) value[i] += axis[k] * image->data[i * channels + k];
+  *seen = (rc_seen){flags, value};
+  return RECEDE_OK;
 }
 
 static void set_directions(float (*direction)[2]) {
@@ -299,33 +305,52 @@ static void set_directions(float (*direction)[2]) {
   }
 }
 
+int rc_border_length(const rc_mask *flags) { return collect_border(flags, NULL); }
+
+int rc_lines_level(const rc_mask *masks, int levels) {
+  for (int exponent = 0; exponent < levels; exponent++) {
+    int border_count = collect_border(&masks[exponent], NULL);
+    if (border_count <= MOST_BORDER) return border_count ? exponent : -1;
+  }
+  return -1;
+}
+
+recede_status rc_lines_at(rc_context *context, const rc_seen *seen,
+                          rc_crossing lines[RC_MOST_LINES], int *count) {
+  float direction[DIRECTIONS][2];
+  int32_t *border;
+  finder f = {.picture = *seen, .direction = direction};
+  rc_block *mark = rc_mark(context);
+  *count = 0;
+  f.border_count = collect_border(seen->flags, NULL);
+  RC_TRY(RC_NEW(context, f.border_count, &border));
+  RC_TRY(RC_NEW(context, f.border_count, &f.best));
+  RC_TRY(RC_NEW_ZERO(context, f.border_count, &f.best_direction));
+  collect_border(seen->flags, border);
+  set_directions(direction);
+  f.border = border;
+  RC_TRY(rc_parallel(context, f.border_count, search_border, &f));
+  pair_up(&f, lines, count);
+  rc_release(context, mark);
+  return RECEDE_OK;
+}
+
 recede_status rc_lines_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                             int levels, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
                             int *count) {
-  float direction[DIRECTIONS][2], *brightness;
-  int32_t *border;
-  int exponent = 0, border_count = collect_border(&masks[0], NULL);
+  static const float grey[3] = {1, 0, 0}, colours[3] = {.3f, .59f, .11f};
+  int exponent = rc_lines_level(masks, levels);
+  const float *axis = images[0].channels == 1 ? grey : colours;
+  rc_seen seen;
   *count = 0;
-  while (exponent + 1 < levels && border_count > MOST_BORDER)
-    border_count = collect_border(&masks[++exponent], NULL);
-  if (!border_count || border_count > MOST_BORDER) return RECEDE_OK;
-  const rc_image *image = &images[exponent];
-  finder f = {.direction = direction, .border_count = border_count};
+  if (exponent < 0) return RECEDE_OK;
   rc_block *mark = rc_mark(context);
-  RC_TRY(RC_NEW(context, (size_t)image->width * (size_t)image->height, &brightness));
-  RC_TRY(RC_NEW(context, border_count, &border));
-  RC_TRY(RC_NEW(context, border_count, &f.best));
-  RC_TRY(RC_NEW_ZERO(context, border_count, &f.best_direction));
-  collect_border(&masks[exponent], border);
-  set_brightness(image, brightness);
-  set_directions(direction);
-  f.picture = (rc_brightness){&masks[exponent], brightness};
-  f.border = border;
-  RC_TRY(rc_parallel(context, border_count, search_border, &f));
+  RC_TRY(rc_see(context, &images[exponent], &masks[exponent], axis, &seen));
+  RC_TRY(rc_lines_at(context, &seen, lines, count));
   rc_chart here = rc_chart_coarser(*chart, exponent);
-  pair_up(&f, lines, count);
   keep_parallel(&here, lines, count);
-  follow(&f, &here, exponent, lines, count);
+  follow(&seen, &here, exponent, lines, count);
+  for (int i = 0; i < *count; i++) memcpy(lines[i].axis, axis, sizeof lines[i].axis);
   rc_release(context, mark);
   return RECEDE_OK;
 }

@@ -13,6 +13,7 @@
 typedef struct rc_crossing {
   float ax, ay, bx, by;
   float strength;                                       /* signal to noise of its weaker side */
+  float axis[3];                                        /* the weights of colours it was seen by */
   float from_x[RC_LINE_PIECES], from_y[RC_LINE_PIECES]; /* where each piece's middle comes from */
 } rc_crossing;
 
@@ -23,6 +24,22 @@ float rc_crossing_distance(const rc_crossing *line, float x, float y);
 rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *line);
 /* The same line in px of a level 2^exponent times coarser; a negative exponent: finer. */
 rc_crossing rc_crossing_coarser(rc_crossing line, int exponent);
+/* One level of the picture, as lines are looked for in it. */
+typedef struct rc_seen {
+  const rc_mask *flags;
+  const float *value;
+} rc_seen;
+
+/* The level's pixels by these weights of their channels. */
+recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *flags,
+                     const float axis[3], rc_seen *seen);
+/* The finest level that lines are looked for in; -1: there is none, or no border. */
+int rc_lines_level(const rc_mask *masks, int levels);
+/* Target pixels that touch known ones. */
+int rc_border_length(const rc_mask *flags);
+/* All that look the same on both sides of the hole, strongest first, px of that level. */
+recede_status rc_lines_at(rc_context *context, const rc_seen *seen,
+                          rc_crossing lines[RC_MOST_LINES], int *count);
 /* Parallel lines of the plane that cross the hole and can be continued, strongest first. images and
  * masks: the pyramid's levels, finest first; chart: of the finest. */
 recede_status rc_lines_find(rc_context *context, const rc_image *images, const rc_mask *masks,

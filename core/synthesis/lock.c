@@ -6,7 +6,7 @@
 #include "synthesis/evaluate.h"
 
 /* How far to each side the texture moves in with a line: the join needs its whole width, and a
- * coarse level a pixel. */
+ * coarse level a pixel. More of it breaks the bricks beside a boundary. */
 #define LOCKED_PX 5.f
 #define LEAST_LOCKED_PX 1.f
 

@@ -153,6 +153,47 @@ static void tiles_do_not(void) {
   g_assert_cmphex(hash[0], ==, hash[1]);
 }
 
+/* Red gravel above this line, green below; of about the same brightness. */
+static double verge_at(double x) { return 88 + .2 * x; }
+
+static picture verge(void) {
+  static const double parts[2][3] = {{1, .5, .4}, {.5, .75, .3}};
+  picture p = picture_new(WIDTH, HEIGHT, 3, RECEDE_U8);
+  for (int y = 0; y < HEIGHT; y++)
+    for (int x = 0; x < WIDTH; x++) {
+      int below = y > verge_at(x);
+      double grain = .15 + .6 * noise_at(x / 7, y / 5, 24) + .2 * noise_at(x, y, 25);
+      for (int k = 0; k < 3; k++) picture_set(&p, x, y, k, (float)(grain * parts[below][k]));
+    }
+  return p;
+}
+
+/* The part of the hole that has the other side's colour, but for 3 px along the line. */
+static double part_on_wrong_side(const char *settings) {
+  double wrong = 0, all = 0;
+  for (int seed = 0; seed < 3; seed++) {
+    task t = task_new(verge(), settings);
+    t.params.slant_deg = 30, t.params.seed = seed;
+    task_hole(&t, hole);
+    task_succeeds(&t);
+    for (int y = hole.y0; y < hole.y1; y++)
+      for (int x = hole.x0; x < hole.x1; x++) {
+        if (fabs(y - verge_at(x)) < 3) continue;
+        bool green = picture_get(&t.result, x, y, 1) > picture_get(&t.result, x, y, 0);
+        wrong += green != (y > verge_at(x)), all++;
+      }
+    task_clear(&t);
+  }
+  g_test_message("%s: %.4f on the wrong side", settings, wrong / all);
+  return wrong / all;
+}
+
+static void textures_keep_to_their_sides(void) {
+  double with = part_on_wrong_side(""), without = part_on_wrong_side("engine-boundary=0");
+  g_assert_cmpfloat(with, <, .01);
+  g_assert_cmpfloat(without, >, with + .02);
+}
+
 static void assert_same_for_threads(picture (*draw)(void), const char *settings) {
   guint64 hash = 0;
   for (int threads = 1; threads <= 3; threads++) {
@@ -181,6 +222,7 @@ static void same_for_threads(void) {
   /* Of four starts two are with lines, one of these from whole copies. */
   assert_same_for_threads(lines_drawn, "quality=draft surface=flat engine-starts=4");
   assert_same_for_threads(boards_drawn, "quality=draft surface=raised");
+  assert_same_for_threads(verge, "quality=draft");
 }
 
 int main(int argc, char **argv) {
@@ -189,6 +231,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/lines/others", others_do_not);
   g_test_add_func("/lines/boards", boards_run);
   g_test_add_func("/lines/tiles", tiles_do_not);
+  g_test_add_func("/lines/sides", textures_keep_to_their_sides);
   g_test_add_func("/lines/same-bytes", same_for_threads);
   return g_test_run();
 }

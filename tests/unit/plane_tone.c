@@ -145,11 +145,35 @@ static void cut_things_do_not_shine(void) {
   task_clear(&t);
 }
 
+/* Two gravels of one grain, the lower one darker. Their step is no drift of the light: without it
+ * each looks like the other, and takes its tone. */
+static void steps_stay(void) {
+  const area hole = {100, 80, 220, 160}, above = {104, 84, 216, 108}, below = {104, 132, 216, 156};
+  picture gravel = picture_new(320, 240, 1, RECEDE_U8);
+  for (int y = 0; y < 240; y++)
+    for (int x = 0; x < 320; x++) {
+      double grain = .4 * noise_at(x / 7, y / 5, 12) + .15 * noise_at(x, y, 13);
+      picture_set(&gravel, x, y, 0, (float)((y < 120 ? .45 : .1) + grain));
+    }
+  task t = task_new(picture_copy(&gravel), "orientation=frontal engine-lines=0");
+  task_hole(&t, hole);
+  task_succeeds(&t);
+  double got = moments_of(&t.result, &t.mask, true, above, 0).mean -
+               moments_of(&t.result, &t.mask, true, below, 0).mean;
+  double known = moments_of(&gravel, &t.mask, true, above, 0).mean -
+                 moments_of(&gravel, &t.mask, true, below, 0).mean;
+  g_test_message("step %.4f, truth %.4f", got, known);
+  g_assert_cmpfloat(fabs(got - known), <, .05);
+  picture_clear(&gravel);
+  task_clear(&t);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/tone/drift", drift_leaves_no_seam);
   g_test_add_func("/tone/sky", sky_tints_no_floor);
   g_test_add_func("/tone/tiles", tiles_keep_their_tone);
+  g_test_add_func("/tone/step", steps_stay);
   g_test_add_func("/tone/cut", cut_things_do_not_shine);
   return g_test_run();
 }
