@@ -13,8 +13,8 @@
 /* The hole's border has so many pixels there still. */
 #define LEAST_BORDER 60
 /* At the coarsest level strips beside the line, outside the hole, differ in the same way at both
- * ends; the product of the differences is so much of the picture's variance. Where two textures meet
- * 1.6 to 4.3, joints of bricks and tiles -.1 to .9, and one 1.2 that does not go on. */
+ * ends; the product of the differences is so much of the picture's variance. Where two textures
+ * meet 1.6 to 4.3, joints of bricks and tiles -.1 to .9, and one 1.2 that does not go on. */
 #define STRIP_FROM_PX 1.5f
 #define STRIP_TO_PX 5.5f
 #define STRIP_LENGTH_PX 12
@@ -126,7 +126,8 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
   if (finest < 0) return RECEDE_OK;
   covariance_of(&images[last], &masks[last], covariance);
   float least = LEAST_STEP * (float)(covariance[0][0] + covariance[1][1] + covariance[2][2]);
-  for (int coarser = LEAST_COARSER; coarser <= MOST_COARSER && finest + coarser < levels; coarser++) {
+  for (int coarser = LEAST_COARSER; coarser <= MOST_COARSER && finest + coarser < levels;
+       coarser++) {
     int exponent = finest + coarser, found;
     float axis[3];
     rc_seen seen;

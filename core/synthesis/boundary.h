@@ -1,6 +1,6 @@
-/* Where two textures meet in a straight line that crosses the hole: a road and its verge, a wall and
- * the roof it stands on. The line is moved in as other lines are, and what lies to one side of it is
- * copied from that side. */
+/* Where two textures meet in a straight line that crosses the hole: a road and its verge, a wall
+ * and the roof it stands on. The line is moved in as other lines are, and what lies to one side of
+ * it is copied from that side. */
 #ifndef RECEDE_SYNTHESIS_BOUNDARY_H
 #define RECEDE_SYNTHESIS_BOUNDARY_H
 
