@@ -111,42 +111,67 @@ static rc_boundary boundary_of(const rc_chart *chart, const rc_crossing *c) {
   return (rc_boundary){nx, ny, nx * (chart->x0 - c->ax) + ny * (chart->y0 - c->ay)};
 }
 
-rc_boundary rc_boundary_coarser(rc_boundary boundary, int exponent) {
-  boundary.at /= (float)(1 << exponent);
-  return boundary;
+/* Searches the levels for the line between two textures, px of the finest level; *apart_px: no
+ * other is nearer. False: there is none. */
+static recede_status search(rc_context *context, const rc_image *images, const rc_mask *masks,
+                            int levels, const rc_chart *chart, rc_crossing *line, float *apart_px,
+                            bool *found) {
+  int finest = rc_lines_level(masks, levels), last = levels - 1, count;
+  double covariance[3][3];
+  rc_crossing lines[RC_MOST_LINES], best;
+  *found = false;
+  if (finest < 0) return RECEDE_OK;
+  covariance_of(&images[last], &masks[last], covariance);
+  float least = LEAST_STEP * (float)(covariance[0][0] + covariance[1][1] + covariance[2][2]);
+  for (int exponent = finest + LEAST_COARSER;
+       exponent <= finest + MOST_COARSER && exponent < levels && !*found; exponent++) {
+    rc_seen seen;
+    rc_chart here = rc_chart_coarser(*chart, exponent);
+    if (rc_border_length(&masks[exponent]) < LEAST_BORDER) return RECEDE_OK;
+    rc_block *mark = rc_mark(context);
+    covariance_of(&images[exponent], &masks[exponent], covariance);
+    principal_axis(covariance, line->axis);
+    RC_TRY(rc_see(context, &images[exponent], &masks[exponent], line->axis, &seen));
+    RC_TRY(rc_lines_at(context, &seen, lines, &count));
+    *found = choose(&images[last], &masks[last], last - exponent, &seen, &here, least, lines, count,
+                    &best);
+    rc_release(context, mark);
+    if (!*found) continue;
+    memcpy(best.axis, line->axis, sizeof best.axis);
+    *line = rc_crossing_coarser(best, -exponent);
+    *apart_px = (float)(RC_PROFILE << exponent);
+  }
+  return RECEDE_OK;
 }
 
 recede_status rc_boundary_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                                int levels, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
-                               int *count, rc_boundary *boundary) {
-  int finest = rc_lines_level(masks, levels), last = levels - 1;
-  double covariance[3][3];
-  rc_crossing seen_here[RC_MOST_LINES], best;
+                               int *count, rc_rails *rails, rc_boundary *boundary) {
+  rc_crossing line, kept[RC_MOST_LINES];
+  float apart_px;
+  bool found, again = false;
+  int kept_count = 0;
   *boundary = (rc_boundary){0, 0, 0};
-  if (finest < 0) return RECEDE_OK;
-  covariance_of(&images[last], &masks[last], covariance);
-  float least = LEAST_STEP * (float)(covariance[0][0] + covariance[1][1] + covariance[2][2]);
-  for (int coarser = LEAST_COARSER; coarser <= MOST_COARSER && finest + coarser < levels;
-       coarser++) {
-    int exponent = finest + coarser, found;
-    float axis[3];
-    rc_seen seen;
-    rc_block *mark = rc_mark(context);
-    rc_chart here = rc_chart_coarser(*chart, exponent);
-    if (rc_border_length(&masks[exponent]) < LEAST_BORDER) return RECEDE_OK;
-    covariance_of(&images[exponent], &masks[exponent], covariance);
-    principal_axis(covariance, axis);
-    RC_TRY(rc_see(context, &images[exponent], &masks[exponent], axis, &seen));
-    RC_TRY(rc_lines_at(context, &seen, seen_here, &found));
-    bool chosen = choose(&images[last], &masks[last], last - exponent, &seen, &here, least,
-                         seen_here, found, &best);
-    rc_release(context, mark);
-    if (!chosen) continue;
-    lines[0] = rc_crossing_coarser(best, -exponent);
-    memcpy(lines[0].axis, axis, sizeof axis);
-    *count = 1;
-    *boundary = boundary_of(chart, &lines[0]);
-    return RECEDE_OK;
+  RC_TRY(search(context, images, masks, levels, chart, &line, &apart_px, &found));
+  rc_copy direction = found ? rc_crossing_direction(chart, &line) : (rc_copy){0, 0, 0};
+  if (!found || rc_parallel_in_plane(direction, (rc_copy){rails->a, rails->b, 0})) return RECEDE_OK;
+  *rails = (rc_rails){0, 0};
+  *boundary = boundary_of(chart, &line);
+  for (int i = 0; i < *count; i++) {
+    bool repeats = false;
+    if (!rc_parallel_in_plane(direction, rc_crossing_direction(chart, &lines[i]))) continue;
+    bool same = rc_crossing_distance(&line, lines[i].ax, lines[i].ay) < apart_px &&
+                rc_crossing_distance(&line, lines[i].bx, lines[i].by) < apart_px;
+    if (!same)
+      RC_TRY(rc_repeats_beside(context, images, masks, levels, chart, &lines[i], boundary,
+                               lines[i].ax, lines[i].ay, &repeats));
+    if (!repeats) kept[kept_count++] = lines[i];
+    again = again || same;
   }
+  /* Where it was found among the others, too, its place is known better. */
+  if (!again && kept_count == RC_MOST_LINES) kept_count--;
+  if (!again) kept[kept_count++] = line;
+  memcpy(lines, kept, (size_t)kept_count * sizeof *lines);
+  *count = kept_count;
   return RECEDE_OK;
 }

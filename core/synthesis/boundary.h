@@ -4,15 +4,14 @@
 #ifndef RECEDE_SYNTHESIS_BOUNDARY_H
 #define RECEDE_SYNTHESIS_BOUNDARY_H
 
-#include "synthesis/lines.h"
+#include "synthesis/rails.h"
 
-/* Looks for one and makes it the only line; without one lines and *count stay, and the boundary is
- * all 0. images and masks: the pyramid's levels, finest first; chart: of the finest. */
+/* Looks for one. It joins the lines, of which only those parallel to it stay, and of these not
+ * those of a texture that repeats; a texture that runs another way than it does no longer runs.
+ * Without one, or where the texture runs along it, all stays as it is, and the boundary is all 0.
+ * images and masks: the pyramid's levels, finest first; chart: of the finest. */
 recede_status rc_boundary_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                                int levels, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
-                               int *count, rc_boundary *boundary);
-
-/* The boundary, px of the finest level relative to its chart's origin, at another level. */
-rc_boundary rc_boundary_coarser(rc_boundary boundary, int exponent);
+                               int *count, rc_rails *rails, rc_boundary *boundary);
 
 #endif

@@ -136,9 +136,9 @@ static recede_status find_lines(rc_context *context, rc_descent *e) {
                        &e->line_count));
   RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
                        &e->line_count, &e->rails));
-  if (e->params->engine_boundary && !rc_runs(&e->rails))
+  if (e->params->engine_boundary)
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
-                            &e->line_count, &e->boundary));
+                            &e->line_count, &e->rails, &e->boundary));
   if (!e->params->engine_rails) e->rails = (rc_rails){0, 0};
   return RECEDE_OK;
 }

@@ -27,6 +27,12 @@ typedef struct rc_boundary {
   float nx, ny, at;
 } rc_boundary;
 
+/* The same boundary at a level 2^exponent times coarser. */
+static inline rc_boundary rc_boundary_coarser(rc_boundary boundary, int exponent) {
+  boundary.at /= (float)(1 << exponent);
+  return boundary;
+}
+
 typedef struct rc_level {
   int width, height;
   uint32_t *pixels; /* 0x00BBGGRR; in the target the current guide */

@@ -227,7 +227,7 @@ rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *c) {
   return (rc_copy){d.a / length, d.b / length, 0.f};
 }
 
-static bool parallel(rc_copy p, rc_copy q) { return fabsf(p.a * q.a + p.b * q.b) > PARALLEL; }
+bool rc_parallel_in_plane(rc_copy p, rc_copy q) { return fabsf(p.a * q.a + p.b * q.b) > PARALLEL; }
 
 float rc_crossing_length(const rc_crossing *c) {
   float dx = c->bx - c->ax, dy = c->by - c->ay;
@@ -244,11 +244,11 @@ static void keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES
   for (int i = 0; i < *count && lines[i].strength >= LEAST_LEADING_STRENGTH; i++) {
     float sum = 0;
     for (int k = 0; k < *count; k++)
-      if (parallel(directions[i], directions[k])) sum += rc_crossing_length(&lines[k]);
+      if (rc_parallel_in_plane(directions[i], directions[k])) sum += rc_crossing_length(&lines[k]);
     if (sum > most) most = sum, leading = i;
   }
   for (int i = 0; i < *count && leading >= 0; i++)
-    if (parallel(directions[i], directions[leading])) lines[kept++] = lines[i];
+    if (rc_parallel_in_plane(directions[i], directions[leading])) lines[kept++] = lines[i];
   *count = kept;
 }
 

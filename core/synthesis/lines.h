@@ -22,6 +22,8 @@ float rc_crossing_length(const rc_crossing *line);
 float rc_crossing_distance(const rc_crossing *line, float x, float y);
 /* Its direction in the plane, a unit vector. chart: of the same level. */
 rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *line);
+/* Of two such directions, within 4 degrees. */
+bool rc_parallel_in_plane(rc_copy a, rc_copy b);
 /* The same line in px of a level 2^exponent times coarser; a negative exponent: finer. */
 rc_crossing rc_crossing_coarser(rc_crossing line, int exponent);
 /* One level of the picture, as lines are looked for in it. */

@@ -44,13 +44,17 @@ static bool source_at(const void *user, int x, int y, float *value) {
   return (*rc_flag(v->flags, x, y) & RC_SOURCE) != 0;
 }
 
-static void set_view(const rc_image *image, const rc_mask *flags, rc_chart chart, view *v) {
+/* beside: only points where its distance is positive; NULL: all. */
+static void set_view(const rc_image *image, const rc_mask *flags, rc_chart chart,
+                     const rc_boundary *beside, view *v) {
   *v = (view){.image = image, .flags = flags, .chart = rc_chart_flat(chart)};
   for (uint32_t n = 0; n < TRIES && v->count < POINTS; n++) {
     uint64_t bits = rc_random(rc_key(0, 97, 0), n, 0, 0);
     int x = (int)rc_below((uint32_t)bits, (uint32_t)image->width);
     int y = (int)rc_below((uint32_t)(bits >> 32), (uint32_t)image->height);
-    float w = 1.f + chart.lx * ((float)x - chart.x0) + chart.ly * ((float)y - chart.y0);
+    float px = (float)x - chart.x0, py = (float)y - chart.y0,
+          w = 1.f + chart.lx * px + chart.ly * py;
+    if (beside && !(beside->nx * px + beside->ny * py + beside->at > 0)) continue;
     if (*rc_flag(flags, x, y) & RC_SOURCE && w > 1 / WIDEST_RATIO && w < WIDEST_RATIO)
       v->points[v->count++] = y * image->width + x;
   }
@@ -165,17 +169,34 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, 1, &v));
   rc_rails r = median_of(chart, lines, *count);
-  set_view(&images[coarse], &masks[coarse], rc_chart_coarser(*chart, coarse), v);
+  set_view(&images[coarse], &masks[coarse], rc_chart_coarser(*chart, coarse), NULL, v);
   look(v, RUN_PX * r.a, RUN_PX * r.b, &along);
   look(v, -RUN_PX * r.b, RUN_PX * r.a, &across);
   if (mean_of(&along) < MOST_ALONG * mean_of(&across)) {
     for (int i = 0; i < *count; i++) reach_px = fmaxf(reach_px, rc_crossing_length(&lines[i]));
     r = sharpened(v, r, reach_px / (float)(1 << coarse), COARSE_TURN);
-    set_view(&images[fine], &masks[fine], rc_chart_coarser(*chart, fine), v);
+    set_view(&images[fine], &masks[fine], rc_chart_coarser(*chart, fine), NULL, v);
     *rails = sharpened(v, r, reach_px / (float)(1 << fine), FINE_TURN);
   } else if (repeats(v, r)) {
     *count = 0;
   }
+  rc_release(context, mark);
+  return rc_poll(context);
+}
+
+recede_status rc_repeats_beside(rc_context *context, const rc_image *images, const rc_mask *masks,
+                                int levels, const rc_chart *chart, const rc_crossing *line,
+                                const rc_boundary *boundary, float x, float y, bool *result) {
+  int coarsest = levels - 1;
+  rc_boundary b = rc_boundary_coarser(*boundary, coarsest);
+  rc_copy d = rc_crossing_direction(chart, line);
+  view *v;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, 1, &v));
+  if (boundary->nx * (x - chart->x0) + boundary->ny * (y - chart->y0) + boundary->at < 0)
+    b = (rc_boundary){-b.nx, -b.ny, -b.at};
+  set_view(&images[coarsest], &masks[coarsest], rc_chart_coarser(*chart, coarsest), &b, v);
+  *result = repeats(v, (rc_rails){d.a, d.b});
   rc_release(context, mark);
   return rc_poll(context);
 }

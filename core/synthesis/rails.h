@@ -28,4 +28,10 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
                             int levels, const rc_chart *chart, const rc_crossing *lines, int *count,
                             rc_rails *rails);
 
+/* Whether the texture on one side of the boundary, px of the finest level, repeats along it: that
+ * where (x, y) lies. */
+recede_status rc_repeats_beside(rc_context *context, const rc_image *images, const rc_mask *masks,
+                                int levels, const rc_chart *chart, const rc_crossing *line,
+                                const rc_boundary *boundary, float x, float y, bool *repeats);
+
 #endif
