@@ -4,7 +4,6 @@
 
 #include "base/memory.h"
 #include "base/random.h"
-#include "synthesis/boundary.h"
 #include "synthesis/coarsest.h"
 #include "synthesis/lock.h"
 #include "synthesis/rest.h"
