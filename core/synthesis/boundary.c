@@ -114,17 +114,16 @@ static rc_boundary boundary_of(const rc_chart *chart, const rc_crossing *c) {
 /* Searches the levels for the line between two textures, px of the finest level; *apart_px: no
  * other is nearer. False: there is none. */
 static recede_status search(rc_context *context, const rc_image *images, const rc_mask *masks,
-                            int levels, const rc_chart *chart, rc_crossing *line, float *apart_px,
-                            bool *found) {
-  int finest = rc_lines_level(masks, levels), last = levels - 1, count;
+                            int levels, int from, const rc_chart *chart, rc_crossing *line,
+                            float *apart_px, bool *found) {
+  int last = levels - 1, count;
   double covariance[3][3];
   rc_crossing lines[RC_MOST_LINES], best;
   *found = false;
-  if (finest < 0) return RECEDE_OK;
   covariance_of(&images[last], &masks[last], covariance);
   float least = LEAST_STEP * (float)(covariance[0][0] + covariance[1][1] + covariance[2][2]);
-  for (int exponent = finest + LEAST_COARSER;
-       exponent <= finest + MOST_COARSER && exponent < levels && !*found; exponent++) {
+  for (int exponent = from + LEAST_COARSER;
+       exponent <= from + MOST_COARSER && exponent < levels && !*found; exponent++) {
     rc_seen seen;
     rc_chart here = rc_chart_coarser(*chart, exponent);
     if (rc_border_length(&masks[exponent]) < LEAST_BORDER) return RECEDE_OK;
@@ -145,14 +144,15 @@ static recede_status search(rc_context *context, const rc_image *images, const r
 }
 
 recede_status rc_boundary_find(rc_context *context, const rc_image *images, const rc_mask *masks,
-                               int levels, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
-                               int *count, rc_rails *rails, rc_boundary *boundary) {
+                               int levels, int from, const rc_chart *chart,
+                               rc_crossing lines[RC_MOST_LINES], int *count, rc_rails *rails,
+                               rc_boundary *boundary) {
   rc_crossing line, kept[RC_MOST_LINES];
   float apart_px;
   bool found, again = false;
   int kept_count = 0;
   *boundary = (rc_boundary){0, 0, 0};
-  RC_TRY(search(context, images, masks, levels, chart, &line, &apart_px, &found));
+  RC_TRY(search(context, images, masks, levels, from, chart, &line, &apart_px, &found));
   rc_copy direction = found ? rc_crossing_direction(chart, &line) : (rc_copy){0, 0, 0};
   if (!found || rc_parallel_in_plane(direction, (rc_copy){rails->a, rails->b, 0})) return RECEDE_OK;
   *rails = (rc_rails){0, 0};

@@ -12,7 +12,8 @@
 /* Each px deeper in the hole counts 1.3 times less; 1.15 is too trusting. */
 #define CONFIDENCE_FALLOFF 1.3f
 
-/* Half a side from a boundary, px of the finest level. */
+/* So far from a boundary a source is half of its side, px of the finest level: beside it lie kerbs
+ * and gutters, which are not to be copied farther in. */
 #define BESIDE_PX 8.f
 
 /* The finest level that is searched: what it settles on is composed. */

@@ -131,13 +131,14 @@ static recede_status choose_surface(rc_context *context, const rc_problem *probl
 
 /* Lines that cross the hole, and whether the texture runs along them. */
 static recede_status find_lines(rc_context *context, rc_descent *e) {
-  if (!e->params->engine_lines) return RECEDE_OK;
-  RC_TRY(rc_lines_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
+  int from = e->params->engine_lines ? rc_lines_level(e->flags, e->level_count) : -1;
+  if (from < 0) return RECEDE_OK;
+  RC_TRY(rc_lines_find(context, &e->images[from], &e->flags[from], from, &e->chart, e->lines,
                        &e->line_count));
   RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
                        &e->line_count, &e->rails));
   if (e->params->engine_boundary)
-    RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
+    RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
                             &e->line_count, &e->rails, &e->boundary));
   if (!e->params->engine_rails) e->rails = (rc_rails){0, 0};
   return RECEDE_OK;

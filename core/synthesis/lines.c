@@ -335,17 +335,14 @@ recede_status rc_lines_at(rc_context *context, const rc_seen *seen,
   return RECEDE_OK;
 }
 
-recede_status rc_lines_find(rc_context *context, const rc_image *images, const rc_mask *masks,
-                            int levels, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
+recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc_mask *mask,
+                            int exponent, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
                             int *count) {
   static const float grey[3] = {1, 0, 0}, colours[3] = {.3f, .59f, .11f};
-  int exponent = rc_lines_level(masks, levels);
-  const float *axis = images[0].channels == 1 ? grey : colours;
+  const float *axis = image->channels == 1 ? grey : colours;
   rc_seen seen;
-  *count = 0;
-  if (exponent < 0) return RECEDE_OK;
   rc_block *mark = rc_mark(context);
-  RC_TRY(rc_see(context, &images[exponent], &masks[exponent], axis, &seen));
+  RC_TRY(rc_see(context, image, mask, axis, &seen));
   RC_TRY(rc_lines_at(context, &seen, lines, count));
   rc_chart here = rc_chart_coarser(*chart, exponent);
   keep_parallel(&here, lines, count);

@@ -42,10 +42,11 @@ int rc_border_length(const rc_mask *flags);
 /* All that look the same on both sides of the hole, strongest first, px of that level. */
 recede_status rc_lines_at(rc_context *context, const rc_seen *seen,
                           rc_crossing lines[RC_MOST_LINES], int *count);
-/* Parallel lines of the plane that cross the hole and can be continued, strongest first. images and
- * masks: the pyramid's levels, finest first; chart: of the finest. */
-recede_status rc_lines_find(rc_context *context, const rc_image *images, const rc_mask *masks,
-                            int levels, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
+/* Parallel lines of the plane that cross the hole and can be continued, strongest first. image and
+ * mask: the level rc_lines_level says, 2^exponent times coarser than the finest, of which chart is.
+ */
+recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc_mask *mask,
+                            int exponent, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
                             int *count);
 
 #endif

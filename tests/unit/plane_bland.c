@@ -72,17 +72,30 @@ static task filled(picture image, area hole, const char *settings, int seed, int
   return t;
 }
 
+typedef bool shows(const picture *p, int x, int y);
+
+/* The part of a filled hole, but for so many columns at each end, that shows something. */
+static double part_of(picture (*draw)(void), area hole, int columns, const char *settings,
+                      int source_x0, shows *is_it) {
+  double found = 0, all = 0;
+  for (int seed = 0; seed < 2; seed++) {
+    task t = filled(draw(), hole, settings, seed, source_x0);
+    for (int y = hole.y0; y < hole.y1; y++)
+      for (int x = hole.x0 + columns; x < hole.x1 - columns; x++)
+        found += is_it(&t.result, x, y), all++;
+    task_clear(&t);
+  }
+  return found / all;
+}
+
+static bool is_wall(const picture *p, int x, int y) {
+  return fabs(picture_get(p, x, y, 0) - .51) < .02;
+}
+
 /* The part of a hole among the pebbles that shows the wall; from_wall: which alone is source. */
 static double wall_in_hole(const char *settings, bool from_wall) {
   const area hole = {50, 70, 150, 170};
-  double sum = 0;
-  for (int seed = 0; seed < 2; seed++) {
-    task t = filled(pebbles_and_wall(), hole, settings, seed, from_wall ? 200 : 0);
-    for (int y = hole.y0; y < hole.y1; y++)
-      for (int x = hole.x0; x < hole.x1; x++)
-        sum += fabs(picture_get(&t.result, x, y, 0) - .51) < .02 ? 1. / 20000 : 0;
-    task_clear(&t);
-  }
+  double sum = part_of(pebbles_and_wall, hole, 0, settings, from_wall ? 200 : 0, is_wall);
   g_test_message("%s: %.3f of the hole is wall", settings, sum);
   return sum;
 }
@@ -131,20 +144,16 @@ static picture near_and_far(void) {
   return p;
 }
 
+static bool is_grainy(const picture *p, int x, int y) {
+  float beside = picture_get(p, x - 1, y, 0) + picture_get(p, x + 1, y, 0);
+  return fabsf(picture_get(p, x, y, 0) - beside / 2) > .05f;
+}
+
 /* The part of a hole near the left side that is grainy: .13 of pebbles without grain (their edges),
  * .64 of those with it. */
 static double far_in_hole(const char *settings, bool from_far) {
   const area hole = {60, 90, 110, 140};
-  double sum = 0;
-  for (int seed = 0; seed < 2; seed++) {
-    task t = filled(near_and_far(), hole, settings, seed, from_far ? 400 : 0);
-    for (int y = hole.y0; y < hole.y1; y++)
-      for (int x = hole.x0 + 1; x < hole.x1 - 1; x++) {
-        float beside = picture_get(&t.result, x - 1, y, 0) + picture_get(&t.result, x + 1, y, 0);
-        sum += fabsf(picture_get(&t.result, x, y, 0) - beside / 2) > .05f ? 1. / 4800 : 0;
-      }
-    task_clear(&t);
-  }
+  double sum = part_of(near_and_far, hole, 1, settings, from_far ? 400 : 0, is_grainy);
   g_test_message("%s: %.3f of the hole is grainy", settings, sum);
   return sum;
 }
