@@ -104,6 +104,8 @@ static const recede_param_info table[] = {
           "copy boards and what else runs along its lines along them"),
     STAGE("engine-boundary", engine_boundary,
           "keep two textures to their sides of the straight line where they meet"),
+    STAGE("engine-texture", engine_texture,
+          "coarse levels compare the finer detail too, by strength and direction"),
     STAGE("engine-whole", engine_whole, "few whole copies start what lines cross (boards always)"),
     STAGE("engine-coherence", engine_coherence, "a price on neighbours with other displacements"),
     STAGE("engine-usage", engine_usage, "a price on taking the same source often"),

@@ -11,15 +11,17 @@ typedef struct halving {
 
 static int clamp(int v, int count) { return v < 0 ? 0 : v >= count ? count - 1 : v; }
 
-static void average(const halving *h, int x, int y, float *out) {
+int rc_half_from(int y, int j, int count) { return clamp(2 * y - 1 + j, count); }
+
+void rc_half_pixel(const float *const rows[4], const uint8_t *const flags[4], int width,
+                   int channels, int x, float *out) {
   static const float tap[4] = {1, 3, 3, 1};
   float sum[3] = {0, 0, 0}, total = 0;
-  int channels = h->image->channels;
   for (int j = 0; j < 4; j++)
     for (int i = 0; i < 4; i++) {
-      int sx = clamp(2 * x - 1 + i, h->image->width), sy = clamp(2 * y - 1 + j, h->image->height);
-      if (!(*rc_flag(h->flags, sx, sy) & RC_KNOWN)) continue;
-      const float *pixel = rc_pixel(h->image, sx, sy);
+      int from = rc_half_from(x, i, width);
+      if (!(flags[j][from] & RC_KNOWN)) continue;
+      const float *pixel = rows[j] + (size_t)from * (size_t)channels;
       float weight = tap[i] * tap[j];
       for (int k = 0; k < channels; k++) sum[k] += weight * pixel[k];
       total += weight;
@@ -29,17 +31,23 @@ static void average(const halving *h, int x, int y, float *out) {
 
 static void half_row(void *user, int y, int thread) {
   const halving *h = user;
+  const float *rows[4];
+  const uint8_t *flags[4];
+  int width = h->image->width;
   (void)thread;
+  for (int j = 0; j < 4; j++) {
+    int from = rc_half_from(y, j, h->image->height);
+    rows[j] = rc_pixel(h->image, 0, from), flags[j] = rc_flag(h->flags, 0, from);
+  }
   for (int x = 0; x < h->half_image->width; x++) {
     uint8_t any = 0, all = 255;
     for (int c = 0; c < 4; c++) {
-      uint8_t flag = *rc_flag(h->flags, clamp(2 * x + (c & 1), h->flags->width),
-                              clamp(2 * y + (c >> 1), h->flags->height));
+      uint8_t flag = flags[1 + (c >> 1)][clamp(2 * x + (c & 1), width)];
       any |= flag, all &= flag;
     }
     *rc_flag(h->half_flags, x, y) =
         any & RC_TARGET ? RC_TARGET : (uint8_t)(all & (RC_KNOWN | RC_SOURCE));
-    average(h, x, y, rc_pixel(h->half_image, x, y));
+    rc_half_pixel(rows, flags, width, h->image->channels, x, rc_pixel(h->half_image, x, y));
   }
 }
 

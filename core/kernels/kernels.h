@@ -14,26 +14,28 @@
 #define RC_PATCH_CHUNK 32
 #define RC_PATCH_LANES (3 * RC_PATCH_CHUNK)
 
-/* Largest weight of a pixel: 3 * 255^2 * 64 * 81 < 2^31. */
+/* Bytes of a pixel, the first the lowest: red, green, blue and 0, or other traits. */
+#define RC_COMPONENTS 4
+/* Largest weight of a pixel: 4 * 255^2 * 64 * 81 < 2^31. */
 #define RC_WEIGHT_ONE 64
 
 /* One patch of the target, unpacked once and compared with many candidates. */
 typedef struct rc_patch {
-  int16_t red[RC_PATCH_LANES], green[RC_PATCH_LANES], blue[RC_PATCH_LANES];
+  int16_t value[RC_COMPONENTS][RC_PATCH_LANES];
   int16_t weight[RC_PATCH_LANES]; /* 0..RC_WEIGHT_ONE */
 } rc_patch;
 
 /* Where a candidate's pixels lie: pixel (ox, oy) of the patch at origin[sy * stride + sx],
  * sx = (x + xx ox + xy oy) >> 16, sy = (y + yx ox + yy oy) >> 16 (16.16 fixed point, arithmetic
- * shift; x and y hold the fraction and the rounding's half). Pixels are 0x00BBGGRR. */
+ * shift; x and y hold the fraction and the rounding's half). */
 typedef struct rc_footprint {
   const uint32_t *origin;
   int32_t stride;
   int32_t x, y, xx, xy, yx, yy;
 } rc_footprint;
 
-/* Sum over the patch of weight * squared colour distance. May stop and return any value >= limit
- * once the sum has reached it. */
+/* Sum over the patch of weight * squared distance over the components. May stop and return any
+ * value >= limit once the sum has reached it. */
 typedef uint32_t rc_distance_kernel(const rc_patch *patch, const rc_footprint *footprint,
                                     uint32_t limit);
 

@@ -9,10 +9,12 @@ static uint32_t distance(const rc_patch *patch, const rc_footprint *footprint, u
     int32_t sx = (footprint->x + footprint->xx * ox + footprint->xy * oy) >> 16;
     int32_t sy = (footprint->y + footprint->yx * ox + footprint->yy * oy) >> 16;
     uint32_t pixel = footprint->origin[(ptrdiff_t)sy * footprint->stride + sx];
-    int32_t red = patch->red[i] - (int32_t)(pixel & 255);
-    int32_t green = patch->green[i] - (int32_t)(pixel >> 8 & 255);
-    int32_t blue = patch->blue[i] - (int32_t)(pixel >> 16 & 255);
-    sum += (uint32_t)(patch->weight[i] * (red * red + green * green + blue * blue));
+    int32_t square = 0;
+    for (int k = 0; k < RC_COMPONENTS; k++) {
+      int32_t difference = patch->value[k][i] - (int32_t)(pixel >> 8 * k & 255);
+      square += difference * difference;
+    }
+    sum += (uint32_t)(patch->weight[i] * square);
   }
   return sum;
 }

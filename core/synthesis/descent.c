@@ -45,8 +45,9 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
     double from = .1 + .6 * pow(.25, exponent), to = .1 + .6 * pow(.25, exponent - 1);
     RC_TRY(
         rc_stage(context, coarsest ? "start" : "search", coarsest ? .1 : from, exponent ? to : .8));
-    RC_TRY(rc_level_new(context, &e->images[exponent], &e->flags[exponent], &chart, gamma, e->gain,
-                        coarsest ? NULL : &coarser.ranges, &level));
+    RC_TRY(rc_level_new(context, &e->images[exponent], &e->flags[exponent], &chart,
+                        &e->traits[exponent], gamma, e->gain, coarsest ? NULL : &coarser.ranges,
+                        &level));
     level.boundary = rc_boundary_coarser(e->boundary, exponent);
     level.beside_px = BESIDE_PX / (float)(1 << exponent);
     if (!coarsest) {

@@ -6,6 +6,7 @@
 #include "synthesis/lines.h"
 #include "synthesis/periods.h"
 #include "synthesis/rails.h"
+#include "synthesis/traits.h"
 
 #define RC_MAX_LEVELS 10
 
@@ -17,6 +18,7 @@ typedef struct rc_descent {
   int level_count;
   rc_image images[RC_MAX_LEVELS];
   rc_mask flags[RC_MAX_LEVELS];
+  rc_traits traits[RC_MAX_LEVELS];
   rc_copy periods[RC_MOST_PERIODS]; /* px of the coarsest level */
   int period_count;
   rc_crossing lines[RC_MOST_LINES]; /* px of the finest level */

@@ -11,9 +11,7 @@ static int32_t unpack_inside(const rc_level *level, size_t at, rc_patch *patch) 
   for (int chunk = 0; chunk < RC_PATCH_LANES; chunk += RC_PATCH_CHUNK)
     for (int i = chunk; i < chunk + RC_PATCH_PIXELS / 3; i++) {
       uint32_t pixel = pixels[level->lane_offset[i]];
-      patch->red[i] = (int16_t)(pixel & 255);
-      patch->green[i] = (int16_t)(pixel >> 8 & 255);
-      patch->blue[i] = (int16_t)(pixel >> 16 & 255);
+      for (int k = 0; k < RC_COMPONENTS; k++) patch->value[k][i] = (int16_t)(pixel >> 8 * k & 255);
       patch->weight[i] = weights[level->lane_offset[i]];
       sum += patch->weight[i];
     }
@@ -24,15 +22,14 @@ static int32_t unpack_at_border(const rc_level *level, int x, int y, rc_patch *p
   int32_t sum = 0;
   for (int i = 0; i < RC_PATCH_LANES; i++) {
     int px = x + rc_lane_x[i], py = y + rc_lane_y[i];
-    patch->red[i] = patch->green[i] = patch->blue[i] = patch->weight[i] = 0;
+    for (int k = 0; k < RC_COMPONENTS; k++) patch->value[k][i] = 0;
+    patch->weight[i] = 0;
     if (i % RC_PATCH_CHUNK >= RC_PATCH_PIXELS / 3 ||
         !rc_inside(level->width, level->height, px, py))
       continue;
     size_t at = (size_t)py * (size_t)level->width + (size_t)px;
     uint32_t pixel = level->pixels[at];
-    patch->red[i] = (int16_t)(pixel & 255);
-    patch->green[i] = (int16_t)(pixel >> 8 & 255);
-    patch->blue[i] = (int16_t)(pixel >> 16 & 255);
+    for (int k = 0; k < RC_COMPONENTS; k++) patch->value[k][i] = (int16_t)(pixel >> 8 * k & 255);
     patch->weight[i] = level->weight[at];
     sum += patch->weight[i];
   }
@@ -48,7 +45,7 @@ static void unpack(const rc_level *level, rc_query *query) {
   int32_t sum =
       inside ? unpack_inside(level, (size_t)y * (size_t)level->width + (size_t)x, &query->patch)
              : unpack_at_border(level, x, y, &query->patch);
-  query->per_weight = sum ? 1.f / (3.f * (float)sum) : 0.f;
+  query->per_weight = sum ? 1.f / (float)sum : 0.f;
   query->unpacked = true;
 }
 

@@ -17,6 +17,7 @@
 #include "synthesis/near.h"
 #include "synthesis/problem.h"
 #include "synthesis/surface.h"
+#include "synthesis/traits.h"
 
 /* The coarsest hole is at least this far across: one level too many breaks regular patterns. */
 #define COARSEST_HOLE_PX 18
@@ -223,6 +224,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(choose_surface(context, problem, &e, &raised));
   e.chart = chart_of(problem, raised);
   RC_TRY(find_lines(context, &e));
+  if (params->engine_texture)
+    RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   context->report.surface = raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;
   RC_TRY(rc_descend(context, &e, &finest));
   RC_TRY(rc_stage(context, "composition", .8, .93));

@@ -12,7 +12,7 @@
 /* A level as its line was seen. */
 typedef struct view {
   const rc_level *level;
-  const rc_crossing *line;
+  float axis[RC_COMPONENTS]; /* the line's, told by components */
 } view;
 
 static bool value_at(const view *v, int x, int y, int wanted, float *value) {
@@ -20,8 +20,8 @@ static bool value_at(const view *v, int x, int y, int wanted, float *value) {
   if (!rc_inside(level->width, level->height, x, y)) return false;
   size_t at = (size_t)y * (size_t)level->width + (size_t)x;
   *value = 0;
-  for (int k = 0; k < 3; k++)
-    *value += v->line->axis[k] * (float)(level->pixels[at] >> 8 * k & 255);
+  for (int k = 0; k < RC_COMPONENTS; k++)
+    *value += v->axis[k] * (float)(level->pixels[at] >> 8 * k & 255);
   return (level->flags[at] & wanted) != 0;
 }
 
@@ -41,7 +41,9 @@ static double line_kept(const rc_level *level, const rc_crossing *line, int expo
   float length = sqrtf(dx * dx + dy * dy), piece_px = length / RC_LINE_PIECES;
   int near = (int)fmaxf(RC_PROFILE_NEAR_PX / unit, LEAST_NEAR_PX);
   int count = (int)fmaxf(piece_px, LEAST_PIECE_PX);
-  view v = {level, line};
+  view v = {.level = level};
+  for (int k = 0; k < RC_COMPONENTS; k++)
+    for (int i = 0; i < 3; i++) v.axis[k] += line->axis[i] * level->colours[k][i];
   rc_ruler ruler = {outside, &v, dx / length, dy / length};
   if (!rc_profile_mean(&ruler, ax, ay, -RC_PROFILE_FROM_PX, -1, near, &own[0]) ||
       !rc_profile_mean(&ruler, ax + dx, ay + dy, RC_PROFILE_FROM_PX, 1, near, &own[1]))

@@ -29,13 +29,16 @@ static uint32_t encode(float value, float gain) {
   return byte < 0.f ? 0u : byte >= 255.f ? 255u : (uint32_t)byte;
 }
 
+/* Sums, sums of squares and the number. */
+#define MOMENTS (2 * RC_COMPONENTS + 1)
+
 /* What the rows of a level are made from. */
 typedef struct making {
   const rc_image *image;
   rc_level *level;
   float gain;
-  uint8_t trust[256];     /* by the distance from the hole's border */
-  uint64_t (*moments)[7]; /* of each row's sources: sums, sums of squares, number */
+  uint8_t trust[256];           /* by the distance from the hole's border */
+  uint64_t (*moments)[MOMENTS]; /* of each row's sources */
 } making;
 
 static void pack_row(void *user, int y, int thread) {
@@ -73,11 +76,11 @@ static void weigh_row(void *user, int y, int thread) {
                        : flags & RC_KNOWN ? RC_WEIGHT_ONE
                                           : 0;
     if (!(flags & RC_SOURCE)) continue;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < RC_COMPONENTS; k++) {
       uint32_t v = level->pixels[i] >> 8 * k & 255;
-      moments[k] += v, moments[3 + k] += v * v;
+      moments[k] += v, moments[RC_COMPONENTS + k] += v * v;
     }
-    moments[6]++;
+    moments[MOMENTS - 1]++;
   }
 }
 
@@ -99,12 +102,13 @@ static void find_box(rc_level *level) {
 
 static void set_variance(const making *m) {
   rc_level *level = m->level;
-  double sum[7] = {0}, total = 0;
+  double sum[MOMENTS] = {0}, total = 0;
   for (int y = 0; y < level->height; y++)
-    for (int k = 0; k < 7; k++) sum[k] += (double)m->moments[y][k];
-  for (int k = 0; k < 3 && sum[6] > 0; k++)
-    total += sum[3 + k] / sum[6] - sum[k] / sum[6] * (sum[k] / sum[6]);
-  level->variance = fmaxf((float)(total / 3), 1.f);
+    for (int k = 0; k < MOMENTS; k++) sum[k] += (double)m->moments[y][k];
+  double count = sum[MOMENTS - 1];
+  for (int k = 0; k < RC_COMPONENTS && count > 0; k++)
+    total += sum[RC_COMPONENTS + k] / count - sum[k] / count * (sum[k] / count);
+  level->variance = fmaxf((float)total, 1.f);
 }
 
 /* A counting sort of the sources by log2 w, bands of rows at a time. */
@@ -280,8 +284,8 @@ void rc_level_free_pixels(rc_context *context, rc_level *level) {
 }
 
 recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_mask *flags,
-                           const rc_chart *chart, float gamma, float gain, const rc_ranges *ranges,
-                           rc_level *level) {
+                           const rc_chart *chart, const rc_traits *traits, float gamma, float gain,
+                           const rc_ranges *ranges, rc_level *level) {
   size_t count = (size_t)image->width * (size_t)image->height;
   class_extent extents[RC_MAX_CLASSES];
   memset(level, 0, sizeof *level);
@@ -294,7 +298,14 @@ recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_
   RC_TRY(RC_NEW(context, count, &level->weight));
   RC_TRY(RC_NEW(context, count, &level->room));
   RC_TRY(RC_NEW(context, level->height, &m.moments));
-  RC_TRY(rc_parallel(context, level->height, pack_row, &m));
+  if (traits->pixels) {
+    memcpy(level->pixels, traits->pixels, count * sizeof *level->pixels);
+    memcpy(level->colours, traits->colours, sizeof level->colours);
+    level->principal = true;
+  } else {
+    RC_TRY(rc_parallel(context, level->height, pack_row, &m));
+    for (int k = 0; k < 3; k++) level->colours[k][k] = 1;
+  }
   rc_distance_inside(level->flags, RC_SOURCE, level->width, level->height, true, level->room);
   RC_TRY(rc_poll(context));
   rc_distance_inside(level->flags, RC_TARGET, level->width, level->height, false, level->weight);

@@ -6,6 +6,7 @@
 #include "image/image.h"
 #include "kernels/kernels.h"
 #include "synthesis/copy.h"
+#include "synthesis/traits.h"
 
 /* Target pixels are sorted by w into classes of .3 octave, each with its own range of scales. */
 #define RC_CLASS_OCTAVES .3f
@@ -35,10 +36,13 @@ static inline rc_boundary rc_boundary_coarser(rc_boundary boundary, int exponent
 
 typedef struct rc_level {
   int width, height;
-  uint32_t *pixels; /* 0x00BBGGRR; in the target the current guide */
-  uint8_t *flags;   /* RC_TARGET ... */
-  uint8_t *weight;  /* 0..RC_WEIGHT_ONE: how much the pixel counts in a target patch */
-  uint8_t *room;    /* Chebyshev distance to the nearest pixel that is no source; 0 = is none */
+  uint32_t *pixels; /* a byte for each component; in the target the current guide */
+  /* What a unit of each component says of red, green and blue. */
+  float colours[RC_COMPONENTS][3];
+  bool principal;  /* the first component is what varies most, else it is red */
+  uint8_t *flags;  /* RC_TARGET ... */
+  uint8_t *weight; /* 0..RC_WEIGHT_ONE: how much the pixel counts in a target patch */
+  uint8_t *room;   /* Chebyshev distance to the nearest pixel that is no source; 0 = is none */
   rc_chart chart;
   rc_box box; /* of the target */
   int box_w, box_h;
@@ -50,7 +54,7 @@ typedef struct rc_level {
   rc_ranges ranges;
   rc_boundary boundary;
   float beside_px; /* what is nearer to it is beside it */
-  float variance;  /* of known pixels, byte^2, mean over channels */
+  float variance;  /* of sources, byte^2, summed over the components */
   /* Sources sorted by w: indices of pixels, bin b at order[first[b]] .. order[first[b + 1]]. NULL
    * where nobody asks: the finer levels look nearby, and take the coarsest one's ranges over. */
   int32_t *order;
@@ -70,17 +74,13 @@ static inline size_t rc_level_at(const rc_level *level, int x, int y) {
 static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
   return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & RC_TARGET) != 0;
 }
-static inline float rc_pixel_brightness(uint32_t pixel) {
-  return .3f * (float)(pixel & 255) + .59f * (float)(pixel >> 8 & 255) +
-         .11f * (float)(pixel >> 16 & 255);
-}
 
-/* byte = value * gain + 128. gamma: a target pixel counts gamma times less for each px it is deeper
- * in the hole; 1 = the same. ranges NULL: this is the coarsest level, they are made here from what
- * sources there are. */
+/* traits: the pixels; where they have none the picture's colours are, byte = value * gain + 128.
+ * gamma: a target pixel counts gamma times less for each px it is deeper in the hole; 1 = the same.
+ * ranges NULL: this is the coarsest level, they are made here from what sources there are. */
 recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_mask *flags,
-                           const rc_chart *chart, float gamma, float gain, const rc_ranges *ranges,
-                           rc_level *level);
+                           const rc_chart *chart, const rc_traits *traits, float gamma, float gain,
+                           const rc_ranges *ranges, rc_level *level);
 recede_status rc_level_sort_sources(rc_context *context, rc_level *level);
 /* When a level is done: its field and ranges are all that the next finer one asks for. */
 void rc_level_free_pixels(rc_context *context, rc_level *level);

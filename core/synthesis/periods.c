@@ -19,7 +19,7 @@
 typedef struct correlation {
   const rc_level *level;
   rc_chart flat;
-  const float *brightness;
+  const float *trait; /* of each pixel */
   const int32_t *points;
   int lag;      /* largest */
   float *value; /* (lag + 1) rows of 2 lag + 1 */
@@ -42,7 +42,7 @@ static void correlate_lag(const correlation *c, int dx, int dy, float *value) {
       continue;
     size_t at = (size_t)(int)sy * (size_t)level->width + (size_t)(int)sx;
     if (!level->room[at]) continue;
-    double p = c->brightness[c->points[i]], q = c->brightness[at];
+    double p = c->trait[c->points[i]], q = c->trait[at];
     n++, a += p, b += q, aa += p * p, bb += q * q, ab += p * q;
   }
   double spread = (aa - a * a / fmax(n, 1)) * (bb - b * b / fmax(n, 1));
@@ -106,26 +106,33 @@ static recede_status collect(rc_context *context, const correlation *c,
   return RECEDE_OK;
 }
 
+/* What varies most, or brightness. */
+static float trait_of(const rc_level *level, uint32_t pixel) {
+  if (level->principal) return (float)(pixel & 255);
+  return .3f * (float)(pixel & 255) + .59f * (float)(pixel >> 8 & 255) +
+         .11f * (float)(pixel >> 16 & 255);
+}
+
 recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key,
                               rc_copy periods[RC_MOST_PERIODS], int *count) {
   size_t pixels = (size_t)level->width * (size_t)level->height;
   int sources = level->first[level->bins];
   int third = (level->width < level->height ? level->width : level->height) / 3;
   correlation c = {.level = level, .flat = rc_chart_flat(level->chart)};
-  float *brightness;
+  float *trait;
   int32_t *points;
   *count = 0;
   c.lag = third < MOST_LAG_PX ? third : MOST_LAG_PX;
   if (sources < LEAST_SHARED || c.lag <= LEAST_LAG_PX) return RECEDE_OK;
   rc_block *mark = rc_mark(context);
-  RC_TRY(RC_NEW(context, pixels, &brightness));
+  RC_TRY(RC_NEW(context, pixels, &trait));
   RC_TRY(RC_NEW(context, POINTS, &points));
   RC_TRY(RC_NEW(context, (c.lag + 1) * (2 * c.lag + 1), &c.value));
-  for (size_t i = 0; i < pixels; i++) brightness[i] = rc_pixel_brightness(level->pixels[i]);
+  for (size_t i = 0; i < pixels; i++) trait[i] = trait_of(level, level->pixels[i]);
   for (int i = 0; i < POINTS; i++)
     points[i] =
         level->order[rc_below((uint32_t)rc_random(key, (uint32_t)i, 0, 0), (uint32_t)sources)];
-  c.brightness = brightness, c.points = points;
+  c.trait = trait, c.points = points;
   RC_TRY(rc_parallel(context, c.lag + 1, correlate_row, &c));
   RC_TRY(collect(context, &c, periods, count));
   rc_release(context, mark);

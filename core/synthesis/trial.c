@@ -68,18 +68,18 @@ static double mean_cost(const rc_level *level) {
 
 /* Variance within the patch around a pixel that is at least a patch from the border. */
 static double patch_variance(const rc_level *level, int x, int y) {
-  int32_t sum[3] = {0}, square = 0;
+  int32_t sum[RC_COMPONENTS] = {0}, square = 0;
   double count = (2 * RC_PATCH_RADIUS + 1) * (2 * RC_PATCH_RADIUS + 1), deviation = 0;
   for (int dy = -RC_PATCH_RADIUS; dy <= RC_PATCH_RADIUS; dy++)
     for (int dx = -RC_PATCH_RADIUS; dx <= RC_PATCH_RADIUS; dx++) {
       uint32_t pixel = level->pixels[(size_t)(y + dy) * (size_t)level->width + (size_t)(x + dx)];
-      for (int k = 0; k < 3; k++) {
+      for (int k = 0; k < RC_COMPONENTS; k++) {
         int32_t v = (int32_t)(pixel >> 8 * k & 255);
         sum[k] += v, square += v * v;
       }
     }
-  for (int k = 0; k < 3; k++) deviation += (double)sum[k] * sum[k] / count;
-  return (square - deviation) / (3 * count);
+  for (int k = 0; k < RC_COMPONENTS; k++) deviation += (double)sum[k] * sum[k] / count;
+  return (square - deviation) / count;
 }
 
 typedef struct mean {

@@ -55,13 +55,13 @@ static void weight_row(void *user, int item, int thread) {
 /* What a copy proposes for a pixel. */
 typedef struct proposal {
   rc_copy copy;
-  uint32_t colour;
+  uint32_t pixel;
   bool valid;
 } proposal;
 
 static void vote_pixel(const ballot *b, int x, int y) {
   const rc_level *level = b->level;
-  float sum[4] = {0, 0, 0, 0};
+  float sum[RC_COMPONENTS] = {0}, total = 0.f;
   proposal p = {.copy = {NAN, NAN, NAN}};
   for (int dy = -RC_PATCH_RADIUS; dy <= RC_PATCH_RADIUS; dy += STRIDE)
     for (int dx = -RC_PATCH_RADIUS; dx <= RC_PATCH_RADIUS; dx += STRIDE) {
@@ -75,18 +75,16 @@ static void vote_pixel(const ballot *b, int x, int y) {
         p.copy = level->field[at];
         rc_place place =
             rc_copy_place(&level->chart, p.copy, rc_level_x(level, x), rc_level_y(level, y));
-        p.valid = rc_place_pixel(level, &place, &p.colour);
+        p.valid = rc_place_pixel(level, &place, &p.pixel);
       }
       if (!p.valid) continue;
-      sum[0] += weight * (float)(p.colour & 255);
-      sum[1] += weight * (float)(p.colour >> 8 & 255);
-      sum[2] += weight * (float)(p.colour >> 16 & 255);
-      sum[3] += weight;
+      for (int k = 0; k < RC_COMPONENTS; k++) sum[k] += weight * (float)(p.pixel >> 8 * k & 255);
+      total += weight;
     }
-  if (sum[3] > 0.f)
-    level->pixels[(size_t)y * (size_t)level->width + (size_t)x] =
-        (uint32_t)(sum[0] / sum[3] + .5f) | (uint32_t)(sum[1] / sum[3] + .5f) << 8 |
-        (uint32_t)(sum[2] / sum[3] + .5f) << 16;
+  if (!(total > 0.f)) return;
+  uint32_t pixel = 0;
+  for (int k = 0; k < RC_COMPONENTS; k++) pixel |= (uint32_t)(sum[k] / total + .5f) << 8 * k;
+  level->pixels[(size_t)y * (size_t)level->width + (size_t)x] = pixel;
 }
 
 /* Only sources are read, which are no target pixels: the guide can be written in place. */

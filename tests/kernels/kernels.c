@@ -50,10 +50,10 @@ static void fill_patch(uint32_t item, rc_patch *patch) {
   for (int i = 0; i < RC_PATCH_LANES; i++) {
     uint32_t bits = draw(item, 100u + (uint32_t)i);
     bool padding = i % RC_PATCH_CHUNK >= RC_PATCH_PIXELS / 3;
-    patch->red[i] = extreme ? 255 : (int16_t)(bits & 255);
-    patch->green[i] = extreme ? 255 : (int16_t)(bits >> 8 & 255);
-    patch->blue[i] = extreme ? 255 : (int16_t)(bits >> 16 & 255);
-    patch->weight[i] = extreme ? RC_WEIGHT_ONE : (int16_t)((bits >> 24) % (RC_WEIGHT_ONE + 1));
+    for (int k = 0; k < RC_COMPONENTS; k++)
+      patch->value[k][i] = extreme ? 255 : (int16_t)(bits >> 8 * k & 255);
+    bits = draw(item, 300u + (uint32_t)i);
+    patch->weight[i] = extreme ? RC_WEIGHT_ONE : (int16_t)(bits % (RC_WEIGHT_ONE + 1));
     if (padding) patch->weight[i] = 0;
   }
 }
@@ -99,7 +99,7 @@ static void place(uint32_t item, const guarded *g, bool at_end, trial *t) {
   uint32_t *pixels = (uint32_t *)(void *)g->inside;
   if (at_end) pixels += g->bytes / sizeof *pixels - count;
   for (size_t i = 0; i < count; i++)
-    pixels[i] = is_extreme(item) ? 0 : draw(item, 1000u + (uint32_t)i) & 0xffffff;
+    pixels[i] = is_extreme(item) ? 0 : draw(item, 1000u + (uint32_t)i);
   t->footprint.origin = pixels - (ptrdiff_t)t->top * t->footprint.stride - t->left;
 }
 

@@ -1,8 +1,8 @@
 #include "synthesis/paper/pca.h"
 
-#include <gsl/gsl_eigen.h>
 #include <string.h>
 
+#include "base/eigen.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "synthesis/paper/neighbourhood.h"
@@ -46,48 +46,20 @@ static recede_status covariance(rc_context *context, const float *vectors, int c
   return RECEDE_OK;
 }
 
-/* GSL's own allocator would abort the process when memory is short, unless a handler global to the
- * process is changed; its workspace is four public arrays, so they are ours. The call itself fails
- * only for sizes that do not match. Eigenvector i stands in column i. */
-static recede_status eigen(rc_context *context, double *matrix, int n, int stride, double *values,
-                           double *vectors) {
-  gsl_eigen_symmv_workspace work = {.size = (size_t)n};
-  RC_TRY(RC_NEW(context, n, &work.d));
-  RC_TRY(RC_NEW(context, n, &work.sd));
-  RC_TRY(RC_NEW(context, n, &work.gc));
-  RC_TRY(RC_NEW(context, n, &work.gs));
-  gsl_matrix_view a = gsl_matrix_view_array_with_tda(matrix, (size_t)n, (size_t)n, (size_t)stride);
-  gsl_matrix_view v = gsl_matrix_view_array_with_tda(vectors, (size_t)n, (size_t)n, (size_t)stride);
-  gsl_vector_view e = gsl_vector_view_array(values, (size_t)n);
-  if (gsl_eigen_symmv(&a.matrix, &e.vector, &v.matrix, &work) != 0)
-    return rc_fail(context, RECEDE_INTERNAL, "The principal components could not be found.");
-  return rc_poll(context);
-}
-
-/* The next largest value's index; it is marked as taken by -1. */
-static int take_largest(double *values, int n) {
-  int best = 0;
-  for (int i = 1; i < n; i++)
-    if (values[i] > values[best]) best = i;
-  values[best] = -1;
-  return best;
-}
-
-/* Takes eigenvectors, largest value first, until they hold the part of the variance. */
-static void keep(rc_pca *pca, double *values, const double *vectors, int stride, double part) {
+/* Takes eigenvectors, the largest values first, until they hold the part of the variance. */
+static void keep(rc_pca *pca, const double *values, const double *vectors, int stride,
+                 double part) {
   double all = 0, held = 0;
   for (int i = 0; i < pca->inputs; i++) all += values[i] > 0 ? values[i] : 0;
   pca->components = 0;
   do {
     float *row = pca->basis + (size_t)pca->components * (size_t)pca->stride;
-    double value = 0;
-    for (int i = 0; i < pca->inputs; i++) value = values[i] > value ? values[i] : value;
-    int column = take_largest(values, pca->inputs);
+    int column = pca->components;
     for (int i = 0; i < pca->inputs; i++)
       row[i] = (float)vectors[(size_t)i * (size_t)stride + column];
     pca->shift[pca->components] = rc_dot(row, pca->mean, pca->stride);
     pca->components++;
-    held += value;
+    held += values[column] > 0 ? values[column] : 0;
   } while (held < part * all && pca->components < pca->inputs);
   pca->kept = all > 0 ? held / all : 1;
 }
@@ -114,7 +86,7 @@ recede_status rc_pca_find(rc_context *context, const float *vectors, int count, 
   RC_TRY(RC_NEW(context, inputs, &values));
   find_mean(vectors, count, pca);
   RC_TRY(covariance(context, vectors, count, pca, matrix, stride));
-  RC_TRY(eigen(context, matrix, inputs, stride, values, columns));
+  RC_TRY(rc_eigen(context, matrix, inputs, stride, values, columns));
   keep(pca, values, columns, stride, part);
   rc_release(context, mark);
   return RECEDE_OK;
