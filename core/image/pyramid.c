@@ -13,7 +13,7 @@ static int clamp(int v, int count) { return v < 0 ? 0 : v >= count ? count - 1 :
 
 int rc_half_from(int y, int j, int count) { return clamp(2 * y - 1 + j, count); }
 
-void rc_half_pixel(const float *const rows[4], const uint8_t *const flags[4], int width,
+void rc_half_pixel(const float *const rows[4], int first, const uint8_t *const flags[4], int width,
                    int channels, int x, float *out) {
   static const float tap[4] = {1, 3, 3, 1};
   float sum[3] = {0, 0, 0}, total = 0;
@@ -21,7 +21,7 @@ void rc_half_pixel(const float *const rows[4], const uint8_t *const flags[4], in
     for (int i = 0; i < 4; i++) {
       int from = rc_half_from(x, i, width);
       if (!(flags[j][from] & RC_KNOWN)) continue;
-      const float *pixel = rows[j] + (size_t)from * (size_t)channels;
+      const float *pixel = rows[j] + (size_t)(from - first) * (size_t)channels;
       float weight = tap[i] * tap[j];
       for (int k = 0; k < channels; k++) sum[k] += weight * pixel[k];
       total += weight;
@@ -47,7 +47,7 @@ static void half_row(void *user, int y, int thread) {
     }
     *rc_flag(h->half_flags, x, y) =
         any & RC_TARGET ? RC_TARGET : (uint8_t)(all & (RC_KNOWN | RC_SOURCE));
-    rc_half_pixel(rows, flags, width, h->image->channels, x, rc_pixel(h->half_image, x, y));
+    rc_half_pixel(rows, 0, flags, width, h->image->channels, x, rc_pixel(h->half_image, x, y));
   }
 }
 

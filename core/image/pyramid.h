@@ -11,8 +11,9 @@ recede_status rc_half(rc_context *context, const rc_image *image, const rc_mask 
 
 /* The same in parts. Of count rows (or columns) the j-th of the four that make the half's y-th. */
 int rc_half_from(int y, int j, int count);
-/* The half's x-th pixel from four rows of 1..3 channels and their flags. */
-void rc_half_pixel(const float *const rows[4], const uint8_t *const flags[4], int width,
+/* The half's x-th pixel from four rows of 1..3 channels, which start at column first of the width,
+ * and their flags, which start at column 0. */
+void rc_half_pixel(const float *const rows[4], int first, const uint8_t *const flags[4], int width,
                    int channels, int x, float *out);
 
 #endif

@@ -239,7 +239,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
 uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int channels) {
   uint64_t c = (uint64_t)channels, box = columns * rows;
   uint64_t grown = 4 * box + (256 << 10); /* the box that detail is measured in */
-  uint64_t pyramid = pixels * (4 * c + 1) / 3;
+  /* Levels, and of the coarser ones what their pixels are compared by. */
+  uint64_t pyramid = pixels * (4 * c + 1) / 3 + pixels * 4 / 3;
   /* Of the coarser levels, 1/3 of the finest, only the fields stay; the coarsest alone has sources
    * in order, but it may be the only one. */
   uint64_t levels = pixels * (4 + 1 + 1 + 4) + box * (12 + 4 + 1 + 1) * 4 / 3;

@@ -20,6 +20,9 @@
 #define MOST_INPUTS (3 + DETAILS)
 /* More say no more of what varies most. */
 #define SAMPLES 50000
+/* Half pixels made at once, and the detail that takes. */
+#define STRIP_PX 256
+#define SCRATCH (4 * DETAILS * (2 * STRIP_PX + 2))
 
 /* A level's detail, from that of the level before and what is lost between them. */
 typedef struct pooling {
@@ -27,8 +30,9 @@ typedef struct pooling {
   const rc_mask *flags;
   const rc_image *before; /* data NULL: there is none */
   rc_chart chart;
-  float *scratch; /* four rows for each thread */
   rc_image *pooled;
+  int strips;     /* of each row */
+  float *scratch; /* SCRATCH for each thread */
 } pooling;
 
 /* To the next pixel, or where that is not known from the one before; else 0. */
@@ -42,12 +46,13 @@ static float difference(const pooling *p, int x, int y, int dx, int dy) {
   return 0;
 }
 
-static void detail_row(const pooling *p, int y, float *row) {
+/* Of the columns from first to before end. */
+static void detail_row(const pooling *p, int y, int first, int end, float *row) {
   const rc_chart *chart = &p->chart;
   const uint8_t *flags = rc_flag(p->flags, 0, y);
   float at_y = (float)y - chart->y0;
-  for (int x = 0; x < p->image->width; x++) {
-    float *detail = row + DETAILS * x, at_x = (float)x - chart->x0;
+  for (int x = first; x < end; x++) {
+    float *detail = row + DETAILS * (x - first), at_x = (float)x - chart->x0;
     if (!(flags[x] & RC_KNOWN)) continue; /* nobody looks */
     float gx = difference(p, x, y, 1, 0), gy = difference(p, x, y, 0, 1);
     float outward = at_x * gx + at_y * gy;
@@ -60,20 +65,22 @@ static void detail_row(const pooling *p, int y, float *row) {
   }
 }
 
-static void pool_row(void *user, int y, int thread) {
+static void pool_strip(void *user, int item, int thread) {
   const pooling *p = user;
-  size_t width = (size_t)p->image->width;
-  float *scratch = p->scratch + (size_t)thread * 4 * DETAILS * width;
+  int width = p->image->width, y = item / p->strips, x0 = item % p->strips * STRIP_PX;
+  int x1 = x0 + STRIP_PX < p->pooled->width ? x0 + STRIP_PX : p->pooled->width;
+  int first = rc_half_from(x0, 0, width), end = rc_half_from(x1 - 1, 3, width) + 1;
+  float *scratch = p->scratch + (size_t)thread * SCRATCH;
   const float *rows[4];
   const uint8_t *flags[4];
   for (int j = 0; j < 4; j++) {
     int from = rc_half_from(y, j, p->image->height);
-    float *row = scratch + (size_t)j * DETAILS * width;
-    detail_row(p, from, row);
+    float *row = scratch + j * SCRATCH / 4;
+    detail_row(p, from, first, end, row);
     rows[j] = row, flags[j] = rc_flag(p->flags, 0, from);
   }
-  for (int x = 0; x < p->pooled->width; x++)
-    rc_half_pixel(rows, flags, (int)width, DETAILS, x, rc_pixel(p->pooled, x, y));
+  for (int x = x0; x < x1; x++)
+    rc_half_pixel(rows, first, flags, width, DETAILS, x, rc_pixel(p->pooled, x, y));
 }
 
 /* The inputs of a level and their principal axes. */
@@ -156,16 +163,17 @@ static recede_status project(rc_context *context, const rc_image *image, const r
 recede_status rc_traits_find(rc_context *context, const rc_image *images, const rc_mask *flags,
                              int levels, const rc_chart *chart, rc_traits *traits) {
   rc_image before = {0}, detail;
+  float *scratch;
   for (int n = 1; n < levels; n++)
     RC_TRY(RC_NEW(context, (size_t)images[n].width * (size_t)images[n].height, &traits[n].pixels));
   rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, (size_t)context->threads * SCRATCH, &scratch));
   for (int n = 1; n < levels; n++) {
-    pooling p = {&images[n - 1], &flags[n - 1], &before, rc_chart_coarser(*chart, n - 1),
-                 NULL,           &detail};
-    size_t row = 4 * DETAILS * (size_t)images[n - 1].width;
+    int strips = (images[n].width + STRIP_PX - 1) / STRIP_PX;
     RC_TRY(rc_image_new(context, images[n].width, images[n].height, DETAILS, &detail));
-    RC_TRY(RC_NEW(context, (size_t)context->threads * row, &p.scratch));
-    RC_TRY(rc_parallel(context, detail.height, pool_row, &p));
+    rc_chart finer = rc_chart_coarser(*chart, n - 1);
+    pooling p = {&images[n - 1], &flags[n - 1], &before, finer, &detail, strips, scratch};
+    RC_TRY(rc_parallel(context, detail.height * strips, pool_strip, &p));
     RC_TRY(project(context, &images[n], &flags[n], &detail, &traits[n]));
     before = detail;
   }

@@ -1,0 +1,72 @@
+/* Detail that coarse levels do not show by colour: which way it runs, and how strong it is. */
+#include <math.h>
+
+#include "plane_scene.h"
+
+#define WIDTH 300
+#define HEIGHT 220
+#define SLANT_DEG 30
+
+static const area hole = {105, 75, 195, 145}, everything = {0, 0, WIDTH, HEIGHT};
+
+/* 1 for squares whose strips run along u. */
+static double runs_along(double u, double v, int k) {
+  (void)k;
+  return fmod(floor(u) + floor(v) + 1000, 2);
+}
+
+/* Four strips in each square, of shades that say nothing of the square: every square is as bright
+ * as the others, and its neighbours' strips run the other way. */
+static double parquet(double u, double v, int k) {
+  double across = 4 * (runs_along(u, v, k) > 0 ? v - floor(v) : u - floor(u));
+  int square = (int)floor(u) * 57 + (int)floor(v) * 91, strip = (int)across;
+  double joint = across - strip < .25 ? .35 : 0;
+  return .5 + .2 * noise_at(square, strip, k / 3) - joint;
+}
+
+/* How much more brightness changes down than across in squares that run along u than in the others,
+ * 0 where it is the same and 1 where there is nothing else. */
+static double order(const picture *p, const picture *squares, const picture *mask, bool inside) {
+  double down = 0, across = 0;
+  for (int y = everything.y0; y + 1 < everything.y1; y++)
+    for (int x = everything.x0; x + 1 < everything.x1; x++) {
+      if ((picture_get(mask, x, y, 0) > 0) != inside) continue;
+      double sign = 2 * picture_get(squares, x, y, 0) - 1, at = picture_get(p, x, y, 0);
+      double by_y = fabs(picture_get(p, x, y + 1, 0) - at);
+      double by_x = fabs(picture_get(p, x + 1, y, 0) - at);
+      down += sign * (by_y - by_x), across += by_y + by_x;
+    }
+  return down / across;
+}
+
+/* The hole's order as a part of what is around it. */
+static double order_kept(const char *settings) {
+  double inside = 0, outside = 0;
+  picture squares =
+      picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, runs_along, 22, SLANT_DEG, 0);
+  for (int seed = 0; seed < 4; seed++) {
+    picture p = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, parquet, 22, SLANT_DEG, 0);
+    task t = task_new(p, settings);
+    t.params.slant_deg = SLANT_DEG, t.params.seed = seed;
+    task_hole(&t, hole);
+    task_succeeds(&t);
+    inside += order(&t.result, &squares, &t.mask, true);
+    outside += order(&t.image, &squares, &t.mask, false);
+    task_clear(&t);
+  }
+  g_test_message("%s: order %.3f, around the hole %.3f", settings, inside / 4, outside / 4);
+  picture_clear(&squares);
+  return inside / outside;
+}
+
+static void parquet_goes_on(void) {
+  double with = order_kept(""), without = order_kept("engine-texture=0");
+  g_assert_cmpfloat(with, >, .85);
+  g_assert_cmpfloat(without, <, with - .15);
+}
+
+int main(int argc, char **argv) {
+  g_test_init(&argc, &argv, NULL);
+  g_test_add_func("/texture/parquet", parquet_goes_on);
+  return g_test_run();
+}
