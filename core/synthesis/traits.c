@@ -17,12 +17,15 @@
 #define WEIGHT_OF_DETAIL 2.f
 /* Bytes span this many deviations of the first component to each side. */
 #define DEVIATIONS 3.
+/* With less all is one colour and nothing is to be told. */
+#define LEAST_VARIANCE 1e-18
 #define MOST_INPUTS (3 + DETAILS)
 /* More say no more of what varies most. */
 #define SAMPLES 50000
-/* Half pixels made at once, and the detail that takes. */
-#define STRIP_PX 256
-#define SCRATCH (4 * DETAILS * (2 * STRIP_PX + 2))
+/* Half pixels made at once, each way, and the detail that takes. */
+#define BLOCK_PX 32
+#define SCRATCH_ROW (DETAILS * (2 * BLOCK_PX + 2))
+#define SCRATCH (SCRATCH_ROW * (2 * BLOCK_PX + 2))
 
 /* A level's detail, from that of the level before and what is lost between them. */
 typedef struct pooling {
@@ -31,7 +34,7 @@ typedef struct pooling {
   const rc_image *before; /* data NULL: there is none */
   rc_chart chart;
   rc_image *pooled;
-  int strips;     /* of each row */
+  rc_box half;    /* of pooled that is wanted; the rest is 0 */
   float *scratch; /* SCRATCH for each thread */
 } pooling;
 
@@ -65,99 +68,142 @@ static void detail_row(const pooling *p, int y, int first, int end, float *row) 
   }
 }
 
-static void pool_strip(void *user, int item, int thread) {
+static void pool_block(void *user, int item, int thread) {
   const pooling *p = user;
-  int width = p->image->width, y = item / p->strips, x0 = item % p->strips * STRIP_PX;
-  int x1 = x0 + STRIP_PX < p->pooled->width ? x0 + STRIP_PX : p->pooled->width;
-  int first = rc_half_from(x0, 0, width), end = rc_half_from(x1 - 1, 3, width) + 1;
+  int width = p->image->width, height = p->image->height, columns = p->half.x1 - p->half.x0;
+  int across = (columns + BLOCK_PX - 1) / BLOCK_PX;
+  int x0 = p->half.x0 + item % across * BLOCK_PX, y0 = p->half.y0 + item / across * BLOCK_PX;
+  int x1 = x0 + BLOCK_PX < p->half.x1 ? x0 + BLOCK_PX : p->half.x1;
+  int y1 = y0 + BLOCK_PX < p->half.y1 ? y0 + BLOCK_PX : p->half.y1;
+  rc_box from = {rc_half_from(x0, 0, width), rc_half_from(y0, 0, height),
+                 rc_half_from(x1 - 1, 3, width) + 1, rc_half_from(y1 - 1, 3, height) + 1};
   float *scratch = p->scratch + (size_t)thread * SCRATCH;
-  const float *rows[4];
-  const uint8_t *flags[4];
-  for (int j = 0; j < 4; j++) {
-    int from = rc_half_from(y, j, p->image->height);
-    float *row = scratch + j * SCRATCH / 4;
-    detail_row(p, from, first, end, row);
-    rows[j] = row, flags[j] = rc_flag(p->flags, 0, from);
+  for (int y = from.y0; y < from.y1; y++)
+    detail_row(p, y, from.x0, from.x1, scratch + (y - from.y0) * SCRATCH_ROW);
+  for (int y = y0; y < y1; y++) {
+    const float *rows[4];
+    const uint8_t *flags[4];
+    for (int j = 0; j < 4; j++) {
+      int row = rc_half_from(y, j, height);
+      rows[j] = scratch + (row - from.y0) * SCRATCH_ROW, flags[j] = rc_flag(p->flags, 0, row);
+    }
+    for (int x = x0; x < x1; x++)
+      rc_half_pixel(rows, from.x0, flags, width, DETAILS, x, rc_pixel(p->pooled, x, y));
   }
-  for (int x = x0; x < x1; x++)
-    rc_half_pixel(rows, first, flags, width, DETAILS, x, rc_pixel(p->pooled, x, y));
+}
+
+/* What may be compared at any level, in px of the finest: the sources, the target and some more,
+ * for a coarse pixel's detail is that of many fine ones, and a patch reaches over the border. */
+static rc_box box_that_matters(const rc_mask *flags, int levels) {
+  rc_box box = {flags->width, flags->height, 0, 0};
+  int around = (RC_PATCH_RADIUS + 2) << (levels - 1);
+  for (int y = 0; y < flags->height; y++)
+    for (int x = 0; x < flags->width; x++) {
+      if (!(*rc_flag(flags, x, y) & (RC_SOURCE | RC_TARGET))) continue;
+      if (x < box.x0) box.x0 = x;
+      if (x >= box.x1) box.x1 = x + 1;
+      if (y < box.y0) box.y0 = y;
+      box.y1 = y + 1;
+    }
+  box.x0 = box.x0 > around ? box.x0 - around : 0;
+  box.y0 = box.y0 > around ? box.y0 - around : 0;
+  box.x1 = box.x1 < flags->width - around ? box.x1 + around : flags->width;
+  box.y1 = box.y1 < flags->height - around ? box.y1 + around : flags->height;
+  return box;
+}
+
+static rc_box half_of(rc_box box) {
+  return (rc_box){box.x0 / 2, box.y0 / 2, (box.x1 + 1) / 2, (box.y1 + 1) / 2};
+}
+
+static recede_status pool(rc_context *context, pooling *p) {
+  int columns = p->half.x1 - p->half.x0, rows = p->half.y1 - p->half.y0;
+  int blocks = (columns + BLOCK_PX - 1) / BLOCK_PX * ((rows + BLOCK_PX - 1) / BLOCK_PX);
+  return rc_parallel(context, blocks, pool_block, p);
 }
 
 /* The inputs of a level and their principal axes. */
 typedef struct projection {
   const rc_image *image, *detail;
   const rc_mask *flags;
+  rc_box box;
   int inputs;
   double mean[MOST_INPUTS], covariance[MOST_INPUTS * MOST_INPUTS];
-  double axes[MOST_INPUTS * MOST_INPUTS]; /* the i-th in column i */
-  double gain;
+  /* A component's byte is the sum of the inputs, each times its weight, and the offset. */
+  float weights[RC_COMPONENTS][MOST_INPUTS], offset[RC_COMPONENTS];
   rc_traits *traits;
 } projection;
 
 /* Grey counts as three equal colours do. */
-static double weight_of_colour(const projection *p) {
-  return p->image->channels == 1 ? sqrt(3) : 1;
+static float weight_of_colour(const projection *p) {
+  return p->image->channels == 1 ? 1.7320508f : 1.f;
 }
 
-static void inputs_at(const projection *p, int x, int y, double *inputs) {
+static void inputs_at(const projection *p, int x, int y, float *inputs) {
   const float *colour = rc_pixel(p->image, x, y), *detail = rc_pixel(p->detail, x, y);
   int colours = p->image->channels;
-  for (int k = 0; k < colours; k++) inputs[k] = weight_of_colour(p) * (double)colour[k];
-  for (int k = 0; k < DETAILS; k++) inputs[colours + k] = (double)(WEIGHT_OF_DETAIL * detail[k]);
+  for (int k = 0; k < colours; k++) inputs[k] = weight_of_colour(p) * colour[k];
+  for (int k = 0; k < DETAILS; k++) inputs[colours + k] = WEIGHT_OF_DETAIL * detail[k];
 }
 
 /* Of every so many sources. */
 static void measure(projection *p) {
-  int n = p->inputs, pixels = p->image->width * p->image->height, sources = 0;
-  int step = pixels / SAMPLES + 1;
-  double count = 0, inputs[MOST_INPUTS];
-  for (int at = 0; at < pixels; at++) {
-    if (!(p->flags->data[at] & RC_SOURCE) || sources++ % step) continue;
-    inputs_at(p, at % p->image->width, at / p->image->width, inputs);
-    for (int i = 0; i < n; i++) {
-      p->mean[i] += inputs[i];
-      for (int j = 0; j < n; j++) p->covariance[i * n + j] += inputs[i] * inputs[j];
+  int n = p->inputs, sources = 0;
+  int step = (p->box.x1 - p->box.x0) * (p->box.y1 - p->box.y0) / SAMPLES + 1;
+  float inputs[MOST_INPUTS];
+  double count = 0;
+  for (int y = p->box.y0; y < p->box.y1; y++)
+    for (int x = p->box.x0; x < p->box.x1; x++) {
+      if (!(*rc_flag(p->flags, x, y) & RC_SOURCE) || sources++ % step) continue;
+      inputs_at(p, x, y, inputs);
+      for (int i = 0; i < n; i++) {
+        p->mean[i] += (double)inputs[i];
+        for (int j = 0; j < n; j++)
+          p->covariance[i * n + j] += (double)inputs[i] * (double)inputs[j];
+      }
+      count++;
     }
-    count++;
-  }
   for (int i = 0; i < n && count > 0; i++) p->mean[i] /= count;
   for (int i = 0; i < n && count > 0; i++)
     for (int j = 0; j < n; j++)
       p->covariance[i * n + j] = p->covariance[i * n + j] / count - p->mean[i] * p->mean[j];
 }
 
-static void project_row(void *user, int y, int thread) {
-  const projection *p = user;
+static recede_status find_components(rc_context *context, projection *p) {
   int n = p->inputs;
-  double inputs[MOST_INPUTS];
-  uint32_t *pixels = p->traits->pixels + (size_t)y * (size_t)p->image->width;
-  (void)thread;
-  for (int x = 0; x < p->image->width; x++) {
-    pixels[x] = 0;
-    inputs_at(p, x, y, inputs);
-    for (int k = 0; k < RC_COMPONENTS; k++) {
-      double sum = 0;
-      for (int i = 0; i < n; i++) sum += p->axes[i * n + k] * (inputs[i] - p->mean[i]);
-      double byte = fmin(fmax(sum * p->gain + 128.5, 0), 255);
-      pixels[x] |= (uint32_t)byte << 8 * k;
+  double values[MOST_INPUTS], axes[MOST_INPUTS * MOST_INPUTS]; /* the k-th in column k */
+  measure(p);
+  RC_TRY(rc_eigen(context, p->covariance, n, n, values, axes));
+  double gain = values[0] > LEAST_VARIANCE ? 127 / (DEVIATIONS * sqrt(values[0])) : 1;
+  for (int k = 0; k < RC_COMPONENTS; k++) {
+    double offset = 128.5;
+    for (int i = 0; i < n; i++) {
+      p->weights[k][i] = (float)(gain * axes[i * n + k]);
+      offset -= gain * axes[i * n + k] * p->mean[i];
+    }
+    p->offset[k] = (float)offset;
+    for (int i = 0; i < 3; i++) {
+      int colour = p->image->channels == 1 ? 0 : i;
+      p->traits->colours[k][i] = (float)axes[colour * n + k] / weight_of_colour(p);
     }
   }
+  return RECEDE_OK;
 }
 
-static recede_status project(rc_context *context, const rc_image *image, const rc_mask *flags,
-                             const rc_image *detail, rc_traits *traits) {
-  projection p = {.image = image, .detail = detail, .flags = flags, .traits = traits};
-  double values[MOST_INPUTS];
-  p.inputs = image->channels + DETAILS;
-  measure(&p);
-  RC_TRY(rc_eigen(context, p.covariance, p.inputs, p.inputs, values, p.axes));
-  p.gain = values[0] > 1e-18 ? 127 / (DEVIATIONS * sqrt(values[0])) : 1;
-  for (int k = 0; k < RC_COMPONENTS; k++)
-    for (int i = 0; i < 3; i++) {
-      int colour = image->channels == 1 ? 0 : i;
-      traits->colours[k][i] = (float)(p.axes[colour * p.inputs + k] / weight_of_colour(&p));
+static void project_row(void *user, int row, int thread) {
+  const projection *p = user;
+  int y = p->box.y0 + row;
+  uint32_t *pixels = p->traits->pixels + (size_t)y * (size_t)p->image->width;
+  float inputs[MOST_INPUTS];
+  (void)thread;
+  for (int x = p->box.x0; x < p->box.x1; x++) {
+    inputs_at(p, x, y, inputs);
+    for (int k = 0; k < RC_COMPONENTS; k++) {
+      float byte = p->offset[k];
+      for (int i = 0; i < p->inputs; i++) byte += p->weights[k][i] * inputs[i];
+      pixels[x] |= (uint32_t)fminf(fmaxf(byte, 0.f), 255.f) << 8 * k;
     }
-  return rc_parallel(context, image->height, project_row, &p);
+  }
 }
 
 recede_status rc_traits_find(rc_context *context, const rc_image *images, const rc_mask *flags,
@@ -165,16 +211,21 @@ recede_status rc_traits_find(rc_context *context, const rc_image *images, const 
   rc_image before = {0}, detail;
   float *scratch;
   for (int n = 1; n < levels; n++)
-    RC_TRY(RC_NEW(context, (size_t)images[n].width * (size_t)images[n].height, &traits[n].pixels));
+    RC_TRY(RC_NEW_ZERO(context, (size_t)images[n].width * (size_t)images[n].height,
+                       &traits[n].pixels));
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, (size_t)context->threads * SCRATCH, &scratch));
+  rc_box box = levels > 1 ? box_that_matters(flags, levels) : (rc_box){0, 0, 0, 0};
   for (int n = 1; n < levels; n++) {
-    int strips = (images[n].width + STRIP_PX - 1) / STRIP_PX;
+    box = half_of(box);
     RC_TRY(rc_image_new(context, images[n].width, images[n].height, DETAILS, &detail));
     rc_chart finer = rc_chart_coarser(*chart, n - 1);
-    pooling p = {&images[n - 1], &flags[n - 1], &before, finer, &detail, strips, scratch};
-    RC_TRY(rc_parallel(context, detail.height * strips, pool_strip, &p));
-    RC_TRY(project(context, &images[n], &flags[n], &detail, &traits[n]));
+    pooling p = {&images[n - 1], &flags[n - 1], &before, finer, &detail, box, scratch};
+    RC_TRY(pool(context, &p));
+    projection q = {.image = &images[n], .detail = &detail, .flags = &flags[n], .box = box};
+    q.inputs = images[n].channels + DETAILS, q.traits = &traits[n];
+    RC_TRY(find_components(context, &q));
+    RC_TRY(rc_parallel(context, box.y1 - box.y0, project_row, &q));
     before = detail;
   }
   rc_release(context, mark);
