@@ -15,7 +15,7 @@
 
 /* And of a source on another side of the boundary than the target, per square of what their sides
  * differ by, 4 at the most. */
-#define RC_PRICE_SIDE 3.f
+#define RC_PRICE_SIDE 6.f
 
 #define RC_NO_COST 1e30f
 
