@@ -22,7 +22,7 @@
 /* The target patch at one pixel, ready to be compared. */
 typedef struct rc_query {
   rc_patch patch;
-  float per_weight; /* 1 / (3 * sum of weights) */
+  float per_weight; /* 1 / sum of weights */
   float side;       /* of the level's boundary, -1 .. 1 */
   float x, y;       /* relative to the chart's origin */
   float low, high;  /* ratios allowed here */
@@ -55,7 +55,7 @@ static inline bool rc_place_at(const rc_level *level, const rc_place *place, siz
   *at = (size_t)(int)y * (size_t)level->width + (size_t)(int)x;
   return true;
 }
-/* Its colour; false when it is no source. */
+/* Its pixel; false when it is no source. */
 static inline bool rc_place_pixel(const rc_level *level, const rc_place *place, uint32_t *pixel) {
   size_t at;
   if (!rc_place_at(level, place, &at) || !level->room[at]) return false;

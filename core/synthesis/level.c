@@ -294,15 +294,15 @@ recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_
   level->flags = flags->data;
   level->chart = *chart;
   making m = {.image = image, .level = level, .gain = gain};
-  RC_TRY(RC_NEW(context, count, &level->pixels));
   RC_TRY(RC_NEW(context, count, &level->weight));
   RC_TRY(RC_NEW(context, count, &level->room));
   RC_TRY(RC_NEW(context, level->height, &m.moments));
   if (traits->pixels) {
-    memcpy(level->pixels, traits->pixels, count * sizeof *level->pixels);
+    level->pixels = traits->pixels;
     memcpy(level->colours, traits->colours, sizeof level->colours);
     level->principal = true;
   } else {
+    RC_TRY(RC_NEW(context, count, &level->pixels));
     RC_TRY(rc_parallel(context, level->height, pack_row, &m));
     for (int k = 0; k < 3; k++) level->colours[k][k] = 1;
   }

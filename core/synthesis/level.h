@@ -37,7 +37,7 @@ static inline rc_boundary rc_boundary_coarser(rc_boundary boundary, int exponent
 typedef struct rc_level {
   int width, height;
   uint32_t *pixels; /* a byte for each component; in the target the current guide */
-  /* What a unit of each component says of red, green and blue. */
+  /* What each component says of red, green and blue, but for one factor. */
   float colours[RC_COMPONENTS][3];
   bool principal;  /* the first component is what varies most, else it is red */
   uint8_t *flags;  /* RC_TARGET ... */
@@ -75,9 +75,10 @@ static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
   return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & RC_TARGET) != 0;
 }
 
-/* traits: the pixels; where they have none the picture's colours are, byte = value * gain + 128.
- * gamma: a target pixel counts gamma times less for each px it is deeper in the hole; 1 = the same.
- * ranges NULL: this is the coarsest level, they are made here from what sources there are. */
+/* traits: the pixels, which are the level's from then on; where they have none the picture's
+ * colours are, byte = value * gain + 128. gamma: a target pixel counts gamma times less for each px
+ * it is deeper in the hole; 1 = the same. ranges NULL: this is the coarsest level, they are made
+ * here from what sources there are. */
 recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_mask *flags,
                            const rc_chart *chart, const rc_traits *traits, float gamma, float gain,
                            const rc_ranges *ranges, rc_level *level);

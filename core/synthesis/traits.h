@@ -10,7 +10,7 @@
 
 typedef struct rc_traits {
   uint32_t *pixels; /* a byte for each component; NULL: red, green, blue and 0 */
-  /* What a unit of a component says of each colour: a colour is about their sum. */
+  /* What a component says of each colour, but for one factor: a colour is about their sum. */
   float colours[RC_COMPONENTS][3];
 } rc_traits;
 

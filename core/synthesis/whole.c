@@ -62,7 +62,7 @@ static int collect_ring(const rc_level *level, int step, int32_t *ring) {
   return ring ? (found + step - 1) / step : found;
 }
 
-static float distance_of(uint32_t p, uint32_t q) {
+static float squared_distance(uint32_t p, uint32_t q) {
   float sum = 0.f;
   for (int k = 0; k < RC_COMPONENTS; k++) {
     float difference = (float)(p >> 8 * k & 255) - (float)(q >> 8 * k & 255);
@@ -77,13 +77,13 @@ static void measure(void *user, int item, int thread) {
   candidate *c = &w->candidates[item];
   (void)thread;
   for (int i = 0; i < w->ring_count; i++) {
-    uint32_t colour;
+    uint32_t pixel;
     int x = w->ring[i] % level->width, y = w->ring[i] / level->width;
     rc_place place =
         rc_copy_place(&level->chart, c->copy, rc_level_x(level, x), rc_level_y(level, y));
     c->misfit[i] = NO_FIT * level->variance;
-    if (!rc_place_pixel(level, &place, &colour)) continue;
-    float misfit = distance_of(colour, level->pixels[w->ring[i]]);
+    if (!rc_place_pixel(level, &place, &pixel)) continue;
+    float misfit = squared_distance(pixel, level->pixels[w->ring[i]]);
     if (misfit >= c->misfit[i]) continue;
     misfit += rc_place_price(level->variance, &place, LEAST_RATIO, MOST_RATIO);
     if (misfit < c->misfit[i]) c->misfit[i] = misfit;
@@ -132,14 +132,14 @@ static void label(const whole *w, int x, int y) {
   rc_query_init(&query);
   rc_query_set(level, x, y, &query);
   for (int n = 0; n < w->chosen_count; n++) {
-    uint32_t colour;
+    uint32_t pixel;
     rc_place place = rc_query_place(level, &query, w->chosen[n]->copy);
     if (misfit[n] >= least || !rc_query_allows(level, &query, w->chosen[n]->copy, &place) ||
-        !rc_place_pixel(level, &place, &colour))
+        !rc_place_pixel(level, &place, &pixel))
       continue;
     least = misfit[n];
     level->field[at] = w->chosen[n]->copy;
-    level->pixels[(size_t)y * (size_t)level->width + (size_t)x] = colour;
+    level->pixels[(size_t)y * (size_t)level->width + (size_t)x] = pixel;
   }
 }
 

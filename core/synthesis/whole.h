@@ -7,7 +7,7 @@
 #include "synthesis/search.h"
 
 /* Gives every target pixel that is not locked one of at most `copies` copies, and the guide its
- * colour; a = NAN where none of them has one. Costs are not known yet. The copies come from
+ * pixel; a = NAN where none of them has one. Costs are not known yet. The copies come from
  * moves, or where there are none from chance sources. */
 recede_status rc_start_whole(rc_context *context, rc_level *level, uint64_t key,
                              const rc_copy *moves, int move_count, int copies);

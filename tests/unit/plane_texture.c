@@ -64,8 +64,27 @@ static void parquet_goes_on(void) {
   g_assert_cmpfloat(without, <, with - .15);
 }
 
+/* Stripes as regular as any grid of samples, which must not see one of their two shades alone. */
+static void stripes_go_on(void) {
+  const area middle = {270, 270, 338, 338};
+  picture p = picture_new(600, 600, 1, RECEDE_U8);
+  for (int y = 0; y < 600; y++)
+    for (int x = 0; x < 600; x++) picture_set(&p, x, y, 0, x / 2 % 2 ? .7f : .3f);
+  task t = task_new(p, "orientation=frontal surface=flat");
+  picture truth = picture_copy(&t.image);
+  task_hole(&t, middle);
+  picture_fill(&t.image, middle, 0);
+  task_succeeds(&t);
+  double psnr = masked_psnr(&t.result, &truth, &t.mask);
+  g_test_message("stripes: %.1f dB", psnr);
+  g_assert_cmpfloat(psnr, >, 40);
+  picture_clear(&truth);
+  task_clear(&t);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/texture/parquet", parquet_goes_on);
+  g_test_add_func("/texture/stripes", stripes_go_on);
   return g_test_run();
 }
