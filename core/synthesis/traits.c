@@ -14,8 +14,8 @@
  * within the plane keep them. Raised ones keep the picture's axes instead, but upright things told
  * by those came out worse (order kept of strips .1 to .6 instead of .5 to .7). */
 #define DETAILS 3
-/* A colour's difference of 1 counts as much as detail's of .5. With 1 fewer squares of parquet get
- * their strips right, with 3 the real textures lose a point or two. */
+/* A colour's difference of 1 counts as much as detail's of .5. With more a parquet gets its squares
+ * right more often, but other textures lose a point or two. */
 #define WEIGHT_OF_DETAIL 2.f
 /* Bytes span this many deviations of the first component to each side. */
 #define DEVIATIONS 3.
