@@ -134,7 +134,7 @@ static bool largest_sum(const guarded *g) {
   trial_make(0, &t);
   place(0, g, true, &t);
   return rc_kernels_reference.distance(&t.patch, &t.footprint, UINT32_MAX) ==
-         3u * 255u * 255u * RC_WEIGHT_ONE * RC_PATCH_PIXELS;
+         255u * 255u * RC_COMPONENTS * RC_WEIGHT_ONE * RC_PATCH_PIXELS;
 }
 
 /* Every pixel of a patch is in exactly one lane that is no padding. */
