@@ -17,6 +17,7 @@ from pathlib import Path
 import report
 import sheet
 from evaluation import PROJECT, Judge, load_cases
+from floors import load_floors
 from methods import ALL, ORACLE, OURS, PEERS, Failed, missing_programs, result
 
 DEFAULT = ['plane', 'frontal', 'paper', *PEERS, ORACLE]
@@ -36,6 +37,7 @@ def arguments():
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument('--photos', action='store_true', help='only the photos')
     kind.add_argument('--synthetic', action='store_true', help='only the rendered cases')
+    kind.add_argument('--floors', action='store_true', help='floors of two textures instead')
     parser.add_argument('--set', action='append', default=[], metavar='KEY=VALUE',
                         help="a developers' parameter for our methods; may be repeated")
     parser.add_argument('--seed', type=int, help='for our methods')
@@ -97,8 +99,9 @@ def main():
     problems = list(missing_programs(chosen.methods, chosen.binary))
     if problems:
         sys.exit('\n'.join(problems))
-    cases = [case for case in load_cases(chosen.cases)
-             if case.is_photo and not chosen.synthetic or not case.is_photo and not chosen.photos]
+    cases = load_floors(chosen.cases) if chosen.floors else [
+        case for case in load_cases(chosen.cases)
+        if case.is_photo and not chosen.synthetic or not case.is_photo and not chosen.photos]
     extra = [f'--set={setting}' for setting in chosen.set]
     extra += [] if chosen.seed is None else [f'--seed={chosen.seed}']
     scores = score_all(cases, chosen.methods, chosen.binary, extra, chosen.out, chosen.jobs)
