@@ -18,10 +18,10 @@ static uint32_t chunk(const rc_patch *restrict patch, const rc_footprint *restri
     index[i] = ((y + yx * lane_x[i] + yy * lane_y[i]) >> 16) * stride +
                ((x + xx * lane_x[i] + xy * lane_y[i]) >> 16);
   for (int i = 0; i < RC_PATCH_CHUNK; i++) pixels[i] = origin[index[i]];
-  const int16_t *restrict value0 = patch->value[0] + first, *restrict value1 =
-                                                                patch->value[1] + first;
-  const int16_t *restrict value2 = patch->value[2] + first, *restrict value3 =
-                                                                patch->value[3] + first;
+  const int16_t *restrict value0 = patch->value[0] + first;
+  const int16_t *restrict value1 = patch->value[1] + first;
+  const int16_t *restrict value2 = patch->value[2] + first;
+  const int16_t *restrict value3 = patch->value[3] + first;
   const int16_t *restrict weight = patch->weight + first;
   int32_t sum = 0;
   for (int i = 0; i < RC_PATCH_CHUNK; i++) {

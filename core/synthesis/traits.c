@@ -1,7 +1,6 @@
 #include "synthesis/traits.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/eigen.h"
 #include "base/memory.h"
