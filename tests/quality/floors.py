@@ -1,6 +1,6 @@
-"""Floors of two textures that meet in a straight line through the hole, some with a kerb: what a van
-on the road and its verge leaves. Drawn with the evaluation data's textures and camera, since its own
-cases have one texture each.
+"""Floors of two textures that meet in a straight line through the hole, some with a kerb: what a
+van on the road and its verge leaves. Drawn with the evaluation data's textures and camera, since
+its own cases have one texture each.
 """
 import json
 import os
