@@ -26,6 +26,8 @@ typedef struct rc_box {
 recede_status rc_image_new(rc_context *context, int width, int height, int channels,
                            rc_image *image);
 recede_status rc_mask_new(rc_context *context, int width, int height, rc_mask *mask);
+/* Around the pixels with any of these flags; all 0 where there is none. */
+rc_box rc_box_of(const rc_mask *mask, int wanted);
 static inline float *rc_pixel(const rc_image *image, int x, int y) {
   return image->data + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;
 }

@@ -84,22 +84,6 @@ static void weigh_row(void *user, int y, int thread) {
   }
 }
 
-static void find_box(rc_level *level) {
-  rc_box box = {level->width, level->height, 0, 0};
-  for (int y = 0; y < level->height; y++)
-    for (int x = 0; x < level->width; x++) {
-      if (!rc_level_is_target(level, x, y)) continue;
-      if (x < box.x0) box.x0 = x;
-      if (x >= box.x1) box.x1 = x + 1;
-      if (y < box.y0) box.y0 = y;
-      box.y1 = y + 1;
-    }
-  if (!box.x1) box = (rc_box){0, 0, 0, 0}; /* all is known: nothing to fill */
-  level->box = box;
-  level->box_w = box.x1 - box.x0;
-  level->box_h = box.y1 - box.y0;
-}
-
 static void set_variance(const making *m) {
   rc_level *level = m->level;
   double sum[MOMENTS] = {0}, total = 0;
@@ -314,7 +298,9 @@ recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_
   RC_TRY(rc_parallel(context, level->height, weigh_row, &m));
   set_variance(&m);
   RC_FREE(context, &m.moments);
-  find_box(level);
+  level->box = rc_box_of(flags, RC_TARGET);
+  level->box_w = level->box.x1 - level->box.x0;
+  level->box_h = level->box.y1 - level->box.y0;
   for (int i = 0; i < RC_PATCH_LANES; i++)
     level->lane_offset[i] = rc_lane_y[i] * level->width + rc_lane_x[i];
   RC_TRY(rc_poll(context));

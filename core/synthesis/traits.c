@@ -97,16 +97,8 @@ static void pool_block(void *user, int item, int thread) {
 /* What may be compared at any level, in px of the finest: the sources, the target and some more,
  * for a coarse pixel's detail is that of many fine ones, and a patch reaches over the border. */
 static rc_box box_that_matters(const rc_mask *flags, int levels) {
-  rc_box box = {flags->width, flags->height, 0, 0};
+  rc_box box = rc_box_of(flags, RC_SOURCE | RC_TARGET);
   int around = (RC_PATCH_RADIUS + 2) << (levels - 1);
-  for (int y = 0; y < flags->height; y++)
-    for (int x = 0; x < flags->width; x++) {
-      if (!(*rc_flag(flags, x, y) & (RC_SOURCE | RC_TARGET))) continue;
-      if (x < box.x0) box.x0 = x;
-      if (x >= box.x1) box.x1 = x + 1;
-      if (y < box.y0) box.y0 = y;
-      box.y1 = y + 1;
-    }
   box.x0 = box.x0 > around ? box.x0 - around : 0;
   box.y0 = box.y0 > around ? box.y0 - around : 0;
   box.x1 = box.x1 < flags->width - around ? box.x1 + around : flags->width;
