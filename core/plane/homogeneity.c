@@ -19,13 +19,14 @@
 #define IMPOSSIBLE 99.
 #define EXCUSED_CONTRAST .5f
 #define ROUNDS 4
-/* Cells beyond the horizon speak against the plane, as half a misfit; so do, less, those that have
- * too few values in common with the rest: were they free, the best planes would be those that leave
- * nothing to compare. At .15 they were, at .5 true planes of slant 70 suffered. Of all weight a
- * share must speak. */
+/* Cells that have too few values in common with the rest speak against the plane, as half a misfit:
+ * were they free, the best planes would be those that leave nothing to compare. So do those beyond
+ * the horizon; less where there may well be a sky, for at .5 a beach was the ceiling above it, and
+ * more where somebody chose what lies on the plane. Of all weight a share must speak. */
 #define LEAST_BINS 20
-#define MISSING_COST .35
-#define HORIZON_COST .5
+#define MISSING_COST .5
+#define SKY_COST .35
+#define CHOSEN_COST .8
 #define LEAST_SHARE .3
 /* w over that at the reference, below which a cell is too near the horizon to be resolved. */
 #define LEAST_W .08
@@ -200,7 +201,8 @@ static double total_cost(const rc_homogeneity *h, const work *w) {
   }
   double all = judged + missing + beyond;
   if (judged < LEAST_SHARE * all || judged == 0) return IMPOSSIBLE;
-  return (judged_cost + h->saturation * (missing * MISSING_COST + beyond * HORIZON_COST)) / all;
+  double horizon_cost = h->chosen ? CHOSEN_COST : SKY_COST;
+  return (judged_cost + h->saturation * (missing * MISSING_COST + beyond * horizon_cost)) / all;
 }
 
 double rc_homogeneity_cost(const rc_homogeneity *h, rc_lean lean, float *scratch, float *misfit) {

@@ -15,6 +15,7 @@ typedef struct rc_homogeneity {
   double focal_px;
   double ref_x, ref_y; /* px: lies on the plane */
   float *weight;       /* of each spectrum */
+  bool chosen;         /* all of them are said to lie on the plane */
   bool raised;         /* the texture stands up from the plane: it shrinks but does not flatten */
   float saturation;    /* a cell's squared misfit from which on it counts as not of the plane */
 } rc_homogeneity;

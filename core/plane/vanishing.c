@@ -1,6 +1,6 @@
 /* Pairs of segments, drawn at random, propose where their lines meet; the proposal to which the
  * most length points wins, is refined to the least-squares one of its supporters, and these leave.
- */
+ * The next is judged by those that are left: a pier has hundreds of joints and two rails. */
 #include "plane/vanishing.h"
 
 #include <math.h>
@@ -13,6 +13,13 @@
 /* A segment points to a place when it is off by less than this: sine of 2 degrees. */
 #define POINTS_TO .035
 #define LEAST_SUPPORTERS 6
+/* As many supporters as chance gives less often than in one picture of ten, were directions random:
+ * so large a part of them is within 2 degrees of any. */
+#define POINTS_BY_CHANCE .022
+#define MOST_BY_CHANCE .1
+/* With a point's supporters leave those that are off by less than 6 degrees: what is left of one
+ * family of lines would make up a second point beside the first. */
+#define LEAVES .105
 /* Nearness, as for the cells of the spectra (estimate.c). */
 #define REACH .15
 #define FAR_WEIGHT .1
@@ -22,7 +29,6 @@ typedef struct line {
   double x, y, dx, dy; /* from the centre in focal lengths */
   double normal[3];    /* of the plane through the camera and the line */
   double weight;
-  bool used;
 } line;
 
 static void cross(const double a[3], const double b[3], double out[3]) {
@@ -49,7 +55,7 @@ static double support_of(const line *lines, int count, const double v[3], int *s
   double sum = 0;
   *supporters = 0;
   for (int i = 0; i < count; i++) {
-    double miss = lines[i].used ? 1 : off(&lines[i], v) / POINTS_TO;
+    double miss = off(&lines[i], v) / POINTS_TO;
     if (miss >= 1) continue;
     sum += lines[i].weight * (1 - miss * miss);
     ++*supporters;
@@ -61,7 +67,7 @@ static double support_of(const line *lines, int count, const double v[3], int *s
 static void refine(const line *lines, int count, double v[3]) {
   double m[3][3] = {{0}}, trace = 0;
   for (int i = 0; i < count; i++) {
-    double miss = lines[i].used ? 1 : off(&lines[i], v) / POINTS_TO;
+    double miss = off(&lines[i], v) / POINTS_TO;
     if (miss >= 1) continue;
     for (int a = 0; a < 3; a++)
       for (int b = 0; b < 3; b++)
@@ -77,15 +83,22 @@ static void refine(const line *lines, int count, double v[3]) {
   }
 }
 
-static bool find_one(line *lines, int count, uint64_t key, rc_vanishing *best) {
-  int supporters = 0, most;
+/* How many points of so many supporters are expected when one is drawn through each pair. */
+static double expected_by_chance(int count, int supporters) {
+  double expected = .5 * count * (count - 1);
+  for (int i = 1; i <= supporters - 2; i++) expected *= POINTS_BY_CHANCE * (count - 1 - i) / i;
+  return expected;
+}
+
+static bool find_one(const line *lines, int count, uint64_t key, rc_vanishing *best) {
+  int supporters;
   best->support = 0;
   for (int n = 0; n < PROPOSALS; n++) {
     uint64_t bits = rc_random(key, (uint32_t)n, 0, 0);
     const line *a = &lines[rc_below((uint32_t)bits, (uint32_t)count)];
     const line *b = &lines[rc_below((uint32_t)(bits >> 32), (uint32_t)count)];
     double v[3];
-    if (a == b || a->used || b->used) continue;
+    if (a == b) continue;
     cross(a->normal, b->normal, v);
     if (!normalise(v)) continue;
     double support = support_of(lines, count, v, &supporters);
@@ -96,16 +109,21 @@ static bool find_one(line *lines, int count, uint64_t key, rc_vanishing *best) {
   for (int i = 0; best->support > 0 && i < REFINEMENTS; i++) {
     double v[3] = {best->direction[0], best->direction[1], best->direction[2]};
     refine(lines, count, v);
-    double support = support_of(lines, count, v, &most);
+    double support = support_of(lines, count, v, &supporters);
     if (support <= best->support) break;
     best->support = support;
     for (int k = 0; k < 3; k++) best->direction[k] = v[k];
   }
-  support_of(lines, count, best->direction, &most);
-  if (most < LEAST_SUPPORTERS) return false;
+  support_of(lines, count, best->direction, &supporters);
+  return supporters >= LEAST_SUPPORTERS && expected_by_chance(count, supporters) < MOST_BY_CHANCE;
+}
+
+/* Returns how many stay. */
+static int leave(line *lines, int count, const double v[3]) {
+  int stay = 0;
   for (int i = 0; i < count; i++)
-    if (off(&lines[i], best->direction) < POINTS_TO) lines[i].used = true;
-  return true;
+    if (off(&lines[i], v) >= LEAVES) lines[stay++] = lines[i];
+  return stay;
 }
 
 static void make_line(const rc_segment *segment, const rc_image *image, double focal_px,
@@ -116,8 +134,7 @@ static void make_line(const rc_segment *segment, const rc_image *image, double f
               segment->dx,
               segment->dy,
               {0},
-              segment->length,
-              false};
+              segment->length};
   const double middle[3] = {l->x, l->y, 1}, along[3] = {l->dx, l->dy, 0};
   cross(middle, along, l->normal);
   normalise(l->normal);
@@ -133,19 +150,19 @@ recede_status rc_vanishing_find(rc_context *context, const rc_image *image, cons
   rc_block *mark = rc_mark(context);
   rc_segment *segments;
   line *lines;
-  int found;
-  double total = 0;
+  int left;
   RC_TRY(RC_NEW(context, RC_MOST_SEGMENTS, &segments));
   RC_TRY(RC_NEW(context, RC_MOST_SEGMENTS, &lines));
-  RC_TRY(rc_segments_find(context, image, flags, segments, &found));
-  for (int i = 0; i < found; i++) {
-    make_line(&segments[i], image, focal_px, on, &lines[i]);
-    total += lines[i].weight;
-  }
-  for (*count = 0; *count < RC_VANISHING_POINTS && found >= LEAST_SUPPORTERS; ++*count) {
+  RC_TRY(rc_segments_find(context, image, flags, segments, &left));
+  for (int i = 0; i < left; i++) make_line(&segments[i], image, focal_px, on, &lines[i]);
+  for (*count = 0; *count < RC_VANISHING_POINTS && left >= LEAST_SUPPORTERS; ++*count) {
+    rc_vanishing *point = &points[*count];
+    double total = 0;
     RC_TRY(rc_poll(context));
-    if (!find_one(lines, found, rc_key(0, (uint32_t)*count, 0), &points[*count])) break;
-    points[*count].support /= total;
+    if (!find_one(lines, left, rc_key(0, (uint32_t)*count, 0), point)) break;
+    for (int i = 0; i < left; i++) total += lines[i].weight;
+    point->support /= total;
+    left = leave(lines, left, point->direction);
   }
   rc_release(context, mark);
   return RECEDE_OK;

@@ -24,6 +24,8 @@
 #define STRAIGHT .9945f /* cosine of 6 degrees: both runs and what connects them */
 #define PARALLEL .9976f /* of 4 degrees, in the plane */
 #define SHORTEST_PX 12.f
+/* The edges of a marking wider than a profile: joints of boards are no steps, .0 to .3. */
+#define LEAST_RISE .6f
 #define LEAST_INSIDE .7f /* of a line between its ends */
 /* Ends are moved by up to so much to where the line is clearest. */
 #define REFINED_STEP_PX .5f
@@ -105,6 +107,16 @@ static bool alike(const profile *a, const profile *b) {
   return ab > LEAST_LIKENESS * sqrtf(aa * bb) && aa < most * bb && bb < most * aa;
 }
 
+/* Its correlation with a step. */
+static float rise_of(const profile *p) {
+  float dot = 0, square = 1e-12f;
+  for (int o = 0; o < RC_PROFILE; o++) {
+    dot += o < RC_PROFILE_HALF ? -p->mean[o] : o > RC_PROFILE_HALF ? p->mean[o] : 0;
+    square += p->mean[o] * p->mean[o];
+  }
+  return dot / sqrtf(square * (RC_PROFILE - 1));
+}
+
 static bool crosses_the_hole(const rc_mask *flags, const rc_crossing *c) {
   int inside = 0, samples = 32;
   for (int i = 1; i < samples; i++) {
@@ -142,7 +154,8 @@ static void refine(const finder *f, rc_crossing *c) {
                            .ay = from.ay + p * ux,
                            .bx = from.bx - q * uy,
                            .by = from.by + q * ux,
-                           .strength = strength};
+                           .strength = strength,
+                           .rise = rise_of(&a[i])};
       }
     if (c->strength == 0) return;
   }
@@ -163,14 +176,24 @@ rc_crossing rc_crossing_coarser(rc_crossing line, int exponent) {
   return line;
 }
 
+static bool run_into_one_another(const rc_crossing *p, const rc_crossing *q) {
+  return rc_crossing_distance(p, q->ax, q->ay) <= RC_PROFILE ||
+         rc_crossing_distance(p, q->bx, q->by) <= RC_PROFILE;
+}
+
+/* One rises where the other falls. */
+static bool edges_of_one_marking(const rc_crossing *p, const rc_crossing *q) {
+  float along = (p->bx - p->ax) * (q->bx - q->ax) + (p->by - p->ay) * (q->by - q->ay);
+  float rises = along > 0 ? -q->rise : q->rise;
+  return fminf(p->rise, rises) > LEAST_RISE || fmaxf(p->rise, rises) < -LEAST_RISE;
+}
+
 /* Strongest first; of lines that run into one another the stronger stays. */
 static void keep(rc_crossing lines[RC_MOST_LINES], int *count, rc_crossing c) {
   int at = 0;
   for (int i = 0; i < *count; i++) {
     rc_crossing *old = &lines[i];
-    if (rc_crossing_distance(old, c.ax, c.ay) > RC_PROFILE &&
-        rc_crossing_distance(old, c.bx, c.by) > RC_PROFILE)
-      continue;
+    if (!run_into_one_another(old, &c) || edges_of_one_marking(old, &c)) continue;
     if (old->strength >= c.strength) return;
     memmove(old, old + 1, (size_t)(*count - i - 1) * sizeof *old);
     (*count)--, i--;
