@@ -15,6 +15,7 @@
  * fit worse, for finer levels break what the coarsest still has, and thin lines are faint there. */
 #define PRICE_OF_BROKEN_LINES .3
 #define FAVOUR_OF_LINES 1.3
+#define FAVOUR_OF_CLEAR_LINES 2.
 /* Moves along the rails are from so many px to so many, no more than whole.c looks at; and so many
  * target pixels may find nothing along them: they go on from what lies beside them. */
 #define LEAST_MOVE_PX 6
@@ -144,7 +145,8 @@ static recede_status try_lines(rc_context *context, rc_descent *e, const starts 
   RC_TRY(rc_lines_lock(context, e->lines, e->line_count, e->level_count - 1, level));
   RC_TRY(try_starts(context, e, s, p, level, scratch, &best, &own));
   own += price_of_broken_lines(e, level, &best);
-  e->continue_lines = own < FAVOUR_OF_LINES * misfit;
+  bool clear = e->lines[0].strength >= RC_CLEAR_STRENGTH;
+  e->continue_lines = own < (clear ? FAVOUR_OF_CLEAR_LINES : FAVOUR_OF_LINES) * misfit;
   if (!e->continue_lines) RC_FREE(context, &level->locked);
   return RECEDE_OK;
 }

@@ -24,8 +24,8 @@
 #define STRAIGHT .9945f /* cosine of 6 degrees: both runs and what connects them */
 #define PARALLEL .9976f /* of 4 degrees, in the plane */
 #define SHORTEST_PX 12.f
-/* The edges of a marking wider than a profile: joints of boards are no steps, .0 to .3. */
-#define LEAST_RISE .6f
+/* Of a marking wider than a profile both edges are kept. */
+#define LEAST_RISE .8f
 #define LEAST_INSIDE .7f /* of a line between its ends */
 /* Ends are moved by up to so much to where the line is clearest. */
 #define REFINED_STEP_PX .5f
@@ -181,8 +181,9 @@ static bool run_into_one_another(const rc_crossing *p, const rc_crossing *q) {
          rc_crossing_distance(p, q->bx, q->by) <= RC_PROFILE;
 }
 
-/* One rises where the other falls. */
+/* Both are clear, and one rises where the other falls. */
 static bool edges_of_one_marking(const rc_crossing *p, const rc_crossing *q) {
+  if (fminf(p->strength, q->strength) < RC_CLEAR_STRENGTH) return false;
   float along = (p->bx - p->ax) * (q->bx - q->ax) + (p->by - p->ay) * (q->by - q->ay);
   float rises = along > 0 ? -q->rise : q->rise;
   return fminf(p->rise, rises) > LEAST_RISE || fmaxf(p->rise, rises) < -LEAST_RISE;

@@ -9,6 +9,9 @@
 #define RC_MOST_LINES 8
 #define RC_LINE_PIECES 8
 
+/* Signal to noise of what is no chance: markings and kerbs, 100 to 250. */
+#define RC_CLEAR_STRENGTH 100.f
+
 /* A line from the hole's border at a to that at b, px of the finest level. */
 typedef struct rc_crossing {
   float ax, ay, bx, by;

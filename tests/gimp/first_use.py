@@ -10,14 +10,13 @@ import time
 from pathlib import Path
 
 import pyatspi
-from dialog import Dialog, on_screen
+from dialog import Dialog
 from host import PRELUDE, Host, Tap
 from server import IMAGE, Server
 from window import Window, wait_for
 
 PROJECT = Path(__file__).resolve().parents[2]
 BOX = (155, 345, 275, 185)  # the lane markings left of the middle
-HORIZON, GUESSED = 319, 162  # where it is in the photo; where the dialog puts it at first
 
 
 def keep(window, folder, number, name):
@@ -55,8 +54,10 @@ def main():
         dialog.says("confidence", seconds=30)
         time.sleep(.5)
         keep(window, folder, 2, "dialog")
-        dialog.window.drag(on_screen(dialog, 480, GUESSED), on_screen(dialog, 480, HORIZON))
-        keep(window, folder, 3, "horizon")
+        dialog.toggle("Draft result")
+        tap.case(dialog.says("Draft:", seconds=60), "the draft is shown", dialog.status())
+        time.sleep(.5)
+        keep(window, folder, 3, "draft")
         dialog.press("OK")
         gone = wait_for(lambda: not dialog.alive(), 60)
         tap.case(gone, "the fill is done", dialog.status() if not gone else "")

@@ -82,6 +82,47 @@ static void others_do_not(void) {
   task_clear(&t);
 }
 
+/* A white marking along the plane, wider than what lines are known by, on asphalt. */
+static double leaning;
+
+static double marking(double u, double v, int k) {
+  double across = u - leaning * v, grain = noise_at((int)floor(u * 12), (int)floor(v * 12), 24);
+  return (fabs(across) < .4 ? .9 : .35) + .06 * grain + .01 * k;
+}
+
+/* The part of the hole that is marked where it must be and nowhere else. */
+static double marked_right(const char *settings) {
+  static const double leans[] = {.4, .9, -.6};
+  double right = 0, all = 0;
+  for (guint i = 0; i < G_N_ELEMENTS(leans); i++) {
+    leaning = leans[i];
+    picture truth = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, marking, 14, 70, 0);
+    for (int seed = 0; seed < 2; seed++) {
+      task t = task_new(picture_copy(&truth), settings);
+      t.params.slant_deg = 70, t.params.seed = seed;
+      task_hole(&t, hole);
+      task_succeeds(&t);
+      for (int y = hole.y0; y < hole.y1; y++)
+        for (int x = hole.x0; x < hole.x1; x++) {
+          float true_value = picture_get(&truth, x, y, 0);
+          if (true_value > .5f && true_value < .8f) continue; /* its edge */
+          double off = fabs(picture_get(&t.result, x, y, 0) - true_value);
+          right += off < .15 && true_value > .8f, all += true_value > .8f;
+          all += off > .15 && true_value < .5f; /* white beside it */
+        }
+      g_test_message("%s, leaning %.1f, seed %d: %.3f", settings, leaning, seed, right / all);
+      task_clear(&t);
+    }
+    picture_clear(&truth);
+  }
+  return right / all;
+}
+
+static void markings_keep_both_edges(void) {
+  g_assert_cmpfloat(marked_right("surface=flat"), >, .8);
+  g_assert_cmpfloat(marked_right("surface=raised"), >, .8);
+}
+
 /* Boards along u, 1 texel wide and some 9 long, each of its own shade, with grain and dark joints.
  */
 static double boards(double u, double v, int k) {
@@ -229,6 +270,7 @@ int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/lines/go-on", lines_go_on);
   g_test_add_func("/lines/others", others_do_not);
+  g_test_add_func("/lines/markings", markings_keep_both_edges);
   g_test_add_func("/lines/boards", boards_run);
   g_test_add_func("/lines/tiles", tiles_do_not);
   g_test_add_func("/lines/sides", textures_keep_to_their_sides);
