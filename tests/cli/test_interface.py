@@ -263,7 +263,7 @@ def test_orient_reads_photos(folder):
         found = report["orientation"]
         height, width = read(images / f"{name}.jpg").shape[:2]
         focal = width / 2 / np.tan(np.radians(25))
-        slant = 90 + np.degrees(np.arctan(((height - 1) / 2 - horizon) / focal))
+        slant = 90 + np.degrees(np.arctan((horizon - (height - 1) / 2) / focal))
         check(abs(found["slant_deg"] - slant) < 3, name, slant, found)
         check(abs(found["tilt_deg"]) < 3, name, found)
         check(found["confidence"] > .5, name, found)
