@@ -323,7 +323,7 @@ static double ambiguity_deg(const search *s) {
   return farthest;
 }
 
-/* The share of cells, by weight, that lie on the plane; the sky need not. */
+/* The share of cells, by weight, that lie on the plane. */
 static double share_on_plane(const search *s) {
   const rc_homogeneity *h = &s->model[s->best_model];
   float *misfit = s->scratch + rc_homogeneity_scratch(h) / sizeof(float);
@@ -331,10 +331,10 @@ static double share_on_plane(const search *s) {
   rc_homogeneity_cost(h, (rc_lean){s->best.x, s->best.y}, s->scratch, misfit);
   for (int i = 0; i < h->spectra->count; i++) {
     double ratio = 2 * misfit[i] / h->saturation;
-    if (h->chosen || !isinf(misfit[i])) all += s->weight[i];
+    all += s->weight[i];
     if (isfinite(misfit[i])) on += s->weight[i] / (1 + ratio * ratio);
   }
-  return all > 0 ? on / all : 0;
+  return on / all;
 }
 
 static double falling(double value, double half) {
