@@ -28,8 +28,7 @@ static recede_status estimate(rc_context *context, double fov_deg, const rc_view
   RC_TRY(rc_stage(context, "orientation", 0, .03));
   RC_TRY(rc_shrink(context, views, factor, &image, &flags));
   RC_TRY(rc_estimate_plane(context, &image, &flags, fmax(fov_of_picture, 1),
-                           views->mask ? small_on : NULL, views->source != NULL, plane,
-                           &orientation->confidence));
+                           views->mask ? small_on : NULL, plane, &orientation->confidence));
   rc_release(context, mark);
   plane->focal_px = frame.focal_px;
   plane->width = width;

@@ -5,12 +5,12 @@
 #include "image/image.h"
 
 /* image is the whole picture or a smaller copy of it; only pixels with RC_SOURCE are looked at.
- * chosen: all of them are said to lie on the plane, else there may be a sky.
- * on (may be NULL): an image point (x, y) px that lies on the plane that is meant.
- * *plane gets image's own size and the given field of view; *confidence 0..1. RECEDE_NO_PLANE when
- * nothing can be said (too few pixels, no texture). */
+ * Where they are a smaller part of all that is known, they are taken to lie on the plane; else
+ * there may be a sky. on (may be NULL): an image point (x, y) px that lies on the plane that is
+ * meant. *plane gets image's own size and the given field of view; *confidence 0..1.
+ * RECEDE_NO_PLANE when nothing can be said (too few pixels, no texture). */
 recede_status rc_estimate_plane(rc_context *context, const rc_image *image, const rc_mask *flags,
-                                double fov_deg, const double on[2], bool chosen,
-                                recede_plane *plane, double *confidence);
+                                double fov_deg, const double on[2], recede_plane *plane,
+                                double *confidence);
 
 #endif

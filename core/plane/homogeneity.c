@@ -19,14 +19,16 @@
 #define IMPOSSIBLE 99.
 #define EXCUSED_CONTRAST .5f
 #define ROUNDS 4
-/* Cells that have too few values in common with the rest speak against the plane, as half a misfit:
- * were they free, the best planes would be those that leave nothing to compare. So do those beyond
- * the horizon; less where there may well be a sky, for at .5 a beach was the ceiling above it, and
- * more where somebody chose what lies on the plane. Of all weight a share must speak. */
+/* Cells that have too few values in common with the rest speak against the plane, as a third of a
+ * misfit: were they free, the best planes would be those that leave nothing to compare. At .15 they
+ * were, at .5 true planes of slant 70 suffered. So do those beyond the horizon; no more where there
+ * may well be a sky, for at .5 dunes were a ceiling's far end. Both cost more where somebody chose
+ * what lies on the plane. Of all weight a share must speak. */
 #define LEAST_BINS 20
-#define MISSING_COST .5
+#define MISSING_COST .35
 #define SKY_COST .35
-#define CHOSEN_COST .8
+#define CHOSEN_MISSING_COST .5
+#define CHOSEN_HORIZON_COST .8
 #define LEAST_SHARE .3
 /* w over that at the reference, below which a cell is too near the horizon to be resolved. */
 #define LEAST_W .08
@@ -201,8 +203,9 @@ static double total_cost(const rc_homogeneity *h, const work *w) {
   }
   double all = judged + missing + beyond;
   if (judged < LEAST_SHARE * all || judged == 0) return IMPOSSIBLE;
-  double horizon_cost = h->chosen ? CHOSEN_COST : SKY_COST;
-  return (judged_cost + h->saturation * (missing * MISSING_COST + beyond * horizon_cost)) / all;
+  double missing_cost = h->chosen ? CHOSEN_MISSING_COST : MISSING_COST;
+  double horizon_cost = h->chosen ? CHOSEN_HORIZON_COST : SKY_COST;
+  return (judged_cost + h->saturation * (missing * missing_cost + beyond * horizon_cost)) / all;
 }
 
 double rc_homogeneity_cost(const rc_homogeneity *h, rc_lean lean, float *scratch, float *misfit) {

@@ -83,7 +83,7 @@ static void refine(const line *lines, int count, double v[3]) {
   }
 }
 
-/* How many points of so many supporters are expected when one is drawn through each pair. */
+/* At most so many points of so many supporters are expected, one drawn through each pair. */
 static double expected_by_chance(int count, int supporters) {
   double expected = .5 * count * (count - 1);
   for (int i = 1; i <= supporters - 2; i++) expected *= POINTS_BY_CHANCE * (count - 1 - i) / i;

@@ -24,7 +24,7 @@
 #define STRAIGHT .9945f /* cosine of 6 degrees: both runs and what connects them */
 #define PARALLEL .9976f /* of 4 degrees, in the plane */
 #define SHORTEST_PX 12.f
-/* Of a marking wider than a profile both edges are kept. */
+/* Of a marking wider than half a profile both edges are kept. */
 #define LEAST_RISE .8f
 #define LEAST_INSIDE .7f /* of a line between its ends */
 /* Ends are moved by up to so much to where the line is clearest. */
@@ -182,7 +182,7 @@ static bool run_into_one_another(const rc_crossing *p, const rc_crossing *q) {
 }
 
 /* Both are clear, and one rises where the other falls. */
-static bool edges_of_one_marking(const rc_crossing *p, const rc_crossing *q) {
+static bool rise_against_each_other(const rc_crossing *p, const rc_crossing *q) {
   if (fminf(p->strength, q->strength) < RC_CLEAR_STRENGTH) return false;
   float along = (p->bx - p->ax) * (q->bx - q->ax) + (p->by - p->ay) * (q->by - q->ay);
   float rises = along > 0 ? -q->rise : q->rise;
@@ -194,7 +194,7 @@ static void keep(rc_crossing lines[RC_MOST_LINES], int *count, rc_crossing c) {
   int at = 0;
   for (int i = 0; i < *count; i++) {
     rc_crossing *old = &lines[i];
-    if (!run_into_one_another(old, &c) || edges_of_one_marking(old, &c)) continue;
+    if (!run_into_one_another(old, &c) || rise_against_each_other(old, &c)) continue;
     if (old->strength >= c.strength) return;
     memmove(old, old + 1, (size_t)(*count - i - 1) * sizeof *old);
     (*count)--, i--;

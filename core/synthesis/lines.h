@@ -9,7 +9,7 @@
 #define RC_MOST_LINES 8
 #define RC_LINE_PIECES 8
 
-/* Signal to noise of what is no chance: markings and kerbs, 100 to 250. */
+/* Signal to noise of what is no chance: markings and kerbs have 100 and more. */
 #define RC_CLEAR_STRENGTH 100.f
 
 /* A line from the hole's border at a to that at b, px of the finest level. */

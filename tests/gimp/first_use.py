@@ -51,7 +51,7 @@ def main():
         pyatspi.Registry.generateKeyboardEvent(9, None, pyatspi.KEY_PRESSRELEASE)
         dialog = Dialog(window, tap)
         dialog.open(frame)
-        dialog.says("confidence", seconds=30)
+        tap.case(dialog.says("with a confidence of", seconds=30), "the road is read", dialog.status())
         time.sleep(.5)
         keep(window, folder, 2, "dialog")
         dialog.toggle("Draft result")

@@ -221,6 +221,39 @@ static void assert_same_answer(const question *a, const question *b) {
   g_assert_cmpfloat(a->answer.confidence, ==, b->answer.confidence);
 }
 
+/* Uprights that stand on boards meet as far off as the boards' joints do: with these they make up a
+ * plane seen from the front, which nothing lies on. */
+static void posts_on_boards_are_no_wall(void) {
+  question *q = new_question();
+  draw(PIER, 82, 0, .5 * SIDE, .8 * SIDE, q->gray);
+  for (int post = 0; post < 6; post++)
+    for (int y = 40; y < 330; y++) memset(q->gray + y * SIDE + 30 + post * 65, 20, 6);
+  for (int y = SIDE - 84; y < SIDE - 39; y++) memset(q->mask + y * SIDE + 300, 255, 45);
+  q->masked = TRUE;
+  g_assert_cmpint(ask(q), ==, RECEDE_OK);
+  g_test_message("slant %.1f tilt %.1f, confidence %.2f", q->answer.slant_deg, q->answer.tilt_deg,
+                 q->answer.confidence);
+  if (q->answer.confidence >= RECEDE_CONFIDENCE_LOW)
+    g_assert_cmpfloat(error_deg(&q->answer, 82, 0), <, 10);
+  g_free(q);
+}
+
+/* A source that leaves out no more than a corner says no more than none does. */
+static void a_source_of_nearly_all_is_no_choice(void) {
+  question *none = new_question(), *nearly = new_question();
+  draw(DOTS, 94, 0, .5 * SIDE, .9 * SIDE, none->gray);
+  for (int y = SIDE - 70; y < SIDE - 40; y++) memset(none->mask + y * SIDE + 160, 255, 60);
+  none->masked = TRUE;
+  *nearly = *none;
+  memset(nearly->source, 255, sizeof nearly->source);
+  nearly->sourced = TRUE;
+  g_assert_cmpint(ask(none), ==, RECEDE_OK);
+  g_assert_cmpint(ask(nearly), ==, RECEDE_OK);
+  assert_same_answer(none, nearly);
+  g_free(none);
+  g_free(nearly);
+}
+
 static void threads_change_nothing(void) {
   question *one = new_question(), *many = new_question();
   draw(DOTS, 40, 70, .5 * SIDE, .5 * SIDE, one->gray);
@@ -301,6 +334,8 @@ int main(int argc, char **argv) {
   g_test_add_func("/orient/two-planes", two_planes_are_not_trusted);
   g_test_add_func("/orient/horizon-inside", horizon_inside_the_picture);
   g_test_add_func("/orient/few-lines", few_lines_tell_what_many_do_not);
+  g_test_add_func("/orient/posts", posts_on_boards_are_no_wall);
+  g_test_add_func("/orient/source-all", a_source_of_nearly_all_is_no_choice);
   g_test_add_func("/orient/threads", threads_change_nothing);
   g_test_add_func("/orient/source-only", only_the_source_is_looked_at);
   g_test_add_func("/orient/cancel", cancel_works_at_any_poll);
