@@ -97,6 +97,8 @@ static float *scratch_of(const search *s, int thread) {
   return s->scratch + s->scratch_size * (size_t)thread;
 }
 
+static rc_lean lean_of(const rc_point *p) { return (rc_lean){p->x, p->y}; }
+
 /* 0: the plane holds the point; 1: it is far from that. */
 static double missed(const rc_vanishing *point, const double normal[3]) {
   const double *v = point->direction;
@@ -118,12 +120,6 @@ static double cost_of(void *user, double across, double along) {
   return rc_homogeneity_cost(o->h, lean, o->scratch, NULL) * cost_of_missing_points(o->s, lean);
 }
 
-static rc_point point_of_normal(const double n[3]) {
-  double sine = sqrt(n[0] * n[0] + n[1] * n[1]), slant = atan2(sine, n[2]);
-  return sine > 1e-9 ? (rc_point){-slant * n[0] / sine, slant * n[1] / sine, 0}
-                     : (rc_point){0, 0, 0};
-}
-
 /* The i-th of the planes that hold direction v. */
 static rc_point fan_of(const double v[3], int i) {
   double side = sqrt(v[0] * v[0] + v[1] * v[1]), angle = i * (M_PI / FAN), n[3];
@@ -134,7 +130,8 @@ static rc_point fan_of(const double v[3], int i) {
   }
   for (int k = 0; k < 3; k++) n[k] = cos(angle) * a[k] + sin(angle) * b[k];
   for (int k = 0; k < 3 && n[2] < 0; k++) n[k] = -n[k];
-  return point_of_normal(n);
+  rc_lean lean = rc_lean_of_normal(n);
+  return (rc_point){lean.across, lean.along, 0};
 }
 
 static rc_point coarse_point(const search *s, int i) {
@@ -265,13 +262,6 @@ static recede_status set_up(rc_context *context, search *s, const rc_spectra *sp
   return RECEDE_OK;
 }
 
-/* 1: a level ceiling; 0: a wall or a floor. */
-static double ceiling_of(const rc_point *p) {
-  double n[3];
-  rc_lean_normal((rc_lean){p->x, p->y}, n);
-  return fmax(0, -n[1]);
-}
-
 /* The reading of least cost, with a little favour for raised textures and against ceilings, and
  * more against raised textures of straight lines. */
 static void choose(search *s) {
@@ -279,7 +269,7 @@ static void choose(search *s) {
   for (int m = 0; m < MODELS; m++)
     for (int i = 0; i < STARTS; i++) {
       const rc_point *p = &s->closer[m][i];
-      double cost = p->cost * (1 + CEILING_COST * ceiling_of(p));
+      double cost = p->cost * (1 + CEILING_COST * rc_lean_ceiling(lean_of(p)));
       if (m == RAISED) cost *= lines > 0 ? 1 + RAISED_LINES_COST * lines : 1 / RAISED_FAVOUR;
       if (cost >= least) continue;
       least = cost;
@@ -312,19 +302,11 @@ static recede_status find_best(rc_context *context, search *s) {
   return RECEDE_OK;
 }
 
-static double degrees_between(const rc_point *a, const rc_point *b) {
-  double n[3], m[3], difference = 0;
-  rc_lean_normal((rc_lean){a->x, a->y}, n);
-  rc_lean_normal((rc_lean){b->x, b->y}, m);
-  for (int i = 0; i < 3; i++) difference += (n[i] - m[i]) * (n[i] - m[i]);
-  return 2 * asin(fmin(1, sqrt(difference) / 2)) / RADIAN;
-}
-
 /* How far apart the parts of the picture, asked alone, read the plane. */
 static double disagreement_deg(const search *s) {
   double square = 0;
   for (int i = 0; i < PARTS; i++) {
-    double apart = degrees_between(&s->best, &s->part[i]);
+    double apart = rc_lean_degrees(lean_of(&s->best), lean_of(&s->part[i]));
     square += apart * apart / PARTS;
   }
   return sqrt(square);
@@ -336,7 +318,7 @@ static double ambiguity_deg(const search *s) {
   for (int m = 0; m < MODELS; m++)
     for (int i = 0; i < STARTS; i++)
       if (s->closer[m][i].cost < ALMOST * s->best.cost)
-        farthest = fmax(farthest, degrees_between(&s->best, &s->closer[m][i]));
+        farthest = fmax(farthest, rc_lean_degrees(lean_of(&s->best), lean_of(&s->closer[m][i])));
   return farthest;
 }
 
@@ -345,7 +327,7 @@ static double share_on_plane(const search *s) {
   const rc_homogeneity *h = &s->model[s->best_model];
   float *misfit = s->scratch + rc_homogeneity_scratch(h) / sizeof(float);
   double on = 0, all = 0;
-  rc_homogeneity_cost(h, (rc_lean){s->best.x, s->best.y}, s->scratch, misfit);
+  rc_homogeneity_cost(h, lean_of(&s->best), s->scratch, misfit);
   for (int i = 0; i < h->spectra->count; i++) {
     double ratio = 2 * misfit[i] / h->saturation;
     all += s->weight[i];
@@ -362,7 +344,7 @@ static double falling(double value, double half) {
 static double told_by_lines(const search *s) {
   const rc_vanishing *first = &s->points[0], *second = &s->points[1];
   double n[3];
-  rc_lean_normal((rc_lean){s->best.x, s->best.y}, n);
+  rc_lean_normal(lean_of(&s->best), n);
   double first_told = first->support * (1 - missed(first, n));
   double second_told = second->support * (1 - missed(second, n));
   return fmax(fmin(first_told, second_told),
@@ -376,7 +358,7 @@ static double judge(const search *s) {
   double left = s->best.cost * s->best.cost;
   double share =
       fmin(1, fmax(0, (share_on_plane(s) - NO_PLANE_SHARE) / (PLANE_SHARE - NO_PLANE_SHARE)));
-  double doubt = CEILING_DOUBT * ceiling_of(&s->best);
+  double doubt = CEILING_DOUBT * rc_lean_ceiling(lean_of(&s->best));
   double texture = share * falling(left, LARGE_MISFIT * LARGE_MISFIT) * (1 - doubt);
   return (1 - (1 - texture) * (1 - told_by_lines(s))) *
          falling(disagreement_deg(s), LARGE_DISAGREEMENT_DEG) *
@@ -400,7 +382,7 @@ recede_status rc_estimate_plane(rc_context *context, const rc_image *image, cons
   RC_TRY(find_points(context, s, image, flags, on));
   RC_TRY(find_best(context, s));
   RC_TRY(rc_parallel(context, PARTS, ask_part, s));
-  rc_lean_normal((rc_lean){s->best.x, s->best.y}, plane->normal);
+  rc_lean_normal(lean_of(&s->best), plane->normal);
   *confidence = judge(s);
   rc_release(context, mark);
   return RECEDE_OK;

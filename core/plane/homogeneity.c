@@ -33,14 +33,6 @@
 /* w over that at the reference, below which a cell is too near the horizon to be resolved. */
 #define LEAST_W .08
 
-void rc_lean_normal(rc_lean lean, double normal[3]) {
-  double slant = sqrt(lean.across * lean.across + lean.along * lean.along);
-  double sinc = slant > 1e-9 ? sin(slant) / slant : 1;
-  normal[0] = -lean.across * sinc;
-  normal[1] = lean.along * sinc;
-  normal[2] = cos(slant);
-}
-
 /* Scratch: values[count][BINS], there[count][BINS] (1 or 0), then what follows. */
 typedef struct work {
   float *values, *there, *mean, *importance, *total, *contrast, *misfit, *trust, *bins;

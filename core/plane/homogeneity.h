@@ -2,12 +2,8 @@
 #ifndef RECEDE_PLANE_HOMOGENEITY_H
 #define RECEDE_PLANE_HOMOGENEITY_H
 
+#include "plane/lean.h"
 #include "plane/spectra.h"
-
-/* A plane as the search sees it: slant * (sin tilt, cos tilt), radians. Smooth at frontal. */
-typedef struct rc_lean {
-  double across, along;
-} rc_lean;
 
 typedef struct rc_homogeneity {
   const rc_spectra *spectra;
@@ -19,9 +15,6 @@ typedef struct rc_homogeneity {
   bool raised;         /* the texture stands up from the plane: it shrinks but does not flatten */
   float saturation;    /* a cell's squared misfit from which on it counts as not of the plane */
 } rc_homogeneity;
-
-/* normal (0, 0, 1) turned by the lean: what recede_plane holds. */
-void rc_lean_normal(rc_lean lean, double normal[3]);
 
 /* Bytes of scratch memory that one call of rc_homogeneity_cost() needs. */
 size_t rc_homogeneity_scratch(const rc_homogeneity *h);

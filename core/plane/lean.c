@@ -1,0 +1,30 @@
+#include "plane/lean.h"
+
+#include <math.h>
+
+void rc_lean_normal(rc_lean lean, double normal[3]) {
+  double slant = sqrt(lean.across * lean.across + lean.along * lean.along);
+  double sinc = slant > 1e-9 ? sin(slant) / slant : 1;
+  normal[0] = -lean.across * sinc;
+  normal[1] = lean.along * sinc;
+  normal[2] = cos(slant);
+}
+
+rc_lean rc_lean_of_normal(const double n[3]) {
+  double sine = sqrt(n[0] * n[0] + n[1] * n[1]), slant = atan2(sine, n[2]);
+  return sine > 1e-9 ? (rc_lean){-slant * n[0] / sine, slant * n[1] / sine} : (rc_lean){0, 0};
+}
+
+double rc_lean_degrees(rc_lean a, rc_lean b) {
+  double n[3], m[3], difference = 0;
+  rc_lean_normal(a, n);
+  rc_lean_normal(b, m);
+  for (int i = 0; i < 3; i++) difference += (n[i] - m[i]) * (n[i] - m[i]);
+  return 2 * asin(fmin(1, sqrt(difference) / 2)) * (180 / M_PI);
+}
+
+double rc_lean_ceiling(rc_lean lean) {
+  double n[3];
+  rc_lean_normal(lean, n);
+  return fmax(0, -n[1]);
+}

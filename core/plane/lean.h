@@ -1,0 +1,18 @@
+/* A plane's orientation as the search sees it. */
+#ifndef RECEDE_PLANE_LEAN_H
+#define RECEDE_PLANE_LEAN_H
+
+/* slant * (sin tilt, cos tilt), radians. Smooth at frontal. */
+typedef struct rc_lean {
+  double across, along;
+} rc_lean;
+
+/* normal (0, 0, 1) turned by the lean: what recede_plane holds. */
+void rc_lean_normal(rc_lean lean, double normal[3]);
+rc_lean rc_lean_of_normal(const double normal[3]);
+/* The angle between two planes. */
+double rc_lean_degrees(rc_lean a, rc_lean b);
+/* 1: a level ceiling; 0: a wall or a floor. */
+double rc_lean_ceiling(rc_lean lean);
+
+#endif
