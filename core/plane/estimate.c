@@ -58,7 +58,8 @@ static const double coarse_slants[] = {12, 25, 38, 50, 60, 70, 80, 90, 98};
 #define COARSE (GRID + RC_VANISHING_POINTS * FAN)
 
 /* Support from which on a vanishing point counts, and counts fully. Stones and grass reach .14, .27
- * where a few segments beside the hole weigh most; tiles, planks and lanes .42 to .94. */
+ * where a few segments beside the hole weigh most, tea bushes .3 to .46; tiles, planks and lanes
+ * .42 to .94. */
 #define LEAST_SUPPORT .3
 #define FULL_SUPPORT .6
 /* What missing one costs at the most, as a share of the misfit, half of it at 3.5 degrees. A whole
