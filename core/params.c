@@ -102,6 +102,7 @@ static const recede_param_info table[] = {
     STAGE("engine-lines", engine_lines, "continue straight lines that cross the hole"),
     STAGE("engine-rails", engine_rails,
           "copy boards and what else runs along its lines along them"),
+    STAGE("engine-gauge", engine_gauge, "and from other rows where boards have one width"),
     STAGE("engine-boundary", engine_boundary,
           "keep two textures to their sides of the straight line where they meet"),
     STAGE("engine-texture", engine_texture,

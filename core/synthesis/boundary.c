@@ -149,14 +149,17 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
                                rc_boundary *boundary) {
   rc_crossing line, kept[RC_MOST_LINES];
   float apart_px;
-  bool found, again = false;
+  bool found, again = false, boards;
   int kept_count = 0;
   *boundary = (rc_boundary){0, 0, 0};
   RC_TRY(search(context, images, masks, levels, from, chart, &line, &apart_px, &found));
   rc_copy direction = found ? rc_crossing_direction(chart, &line) : (rc_copy){0, 0, 0};
   if (!found || rc_parallel_in_plane(direction, (rc_copy){rails->a, rails->b, 0})) return RECEDE_OK;
-  *rails = (rc_rails){0, 0};
-  *boundary = boundary_of(chart, &line);
+  rc_boundary between = boundary_of(chart, &line);
+  RC_TRY(rc_runs_on_both_sides(context, images, masks, levels, chart, rails, &between, &boards));
+  if (boards) return RECEDE_OK; /* light and dark boards' ends in a row */
+  *rails = (rc_rails){0};
+  *boundary = between;
   for (int i = 0; i < *count; i++) {
     bool repeats = false;
     if (!rc_parallel_in_plane(direction, rc_crossing_direction(chart, &lines[i]))) continue;

@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "base/random.h"
+#include "synthesis/gauge.h"
 #include "synthesis/kept.h"
 #include "synthesis/lock.h"
 #include "synthesis/search.h"
@@ -16,11 +17,15 @@
 #define PRICE_OF_BROKEN_LINES .3
 #define FAVOUR_OF_LINES 1.3
 #define FAVOUR_OF_CLEAR_LINES 2.
+/* What comes from another board is not what this one shows again and again beside the hole. */
+#define FAVOUR_OF_BOARDS 1.1
 /* Moves along the rails are from so many px to so many, no more than whole.c looks at; and so many
  * target pixels may find nothing along them: they go on from what lies beside them. */
 #define LEAST_MOVE_PX 6
 #define MOST_MOVE_PX 1000
 #define MOST_WITHOUT_COPY .02
+/* Boards have so many times the copies, for each has its own. */
+#define EACH_BOARD 3
 
 /* Some of all trials: starts by patches first, then those of few whole copies, which are these
  * moves or, where there are none, chance ones. */
@@ -40,7 +45,7 @@ static recede_status start_once(rc_context *context, const rc_descent *e, const 
                       .anywhere = rc_effort_of(e)->start_tries};
   if (trial < s->first_whole) return rc_start(context, level, &search);
   return rc_start_whole(context, level, search.key, s->moves, s->move_count,
-                        copies[(trial - s->first_whole) % 3]);
+                        (level->board ? EACH_BOARD : 1) * copies[(trial - s->first_whole) % 3]);
 }
 
 /* All trials get a third of their iterations, the better half of them the rest. Of two both get
@@ -106,33 +111,58 @@ static bool nearly_all_have_copies(const rc_level *level) {
 static recede_status moves_along(rc_context *context, const rc_descent *e, const rc_level *level,
                                  const rc_copy **moves, int *count) {
   rc_copy *made;
+  rc_rails rails = rc_rails_coarser(e->rails, e->level_count - 1);
   int most = level->width + level->height;
   if (most > MOST_MOVE_PX) most = MOST_MOVE_PX;
   *count = 0;
-  RC_TRY(RC_NEW(context, 2 * most, &made));
+  RC_TRY(RC_NEW(context, 2 * most * (2 * rails.rows + 1), &made));
   for (int px = LEAST_MOVE_PX; px <= most; px++)
-    for (int sign = -1; sign <= 1; sign += 2) {
-      float by = (float)(sign * px);
-      made[(*count)++] = rc_copy_of_move(&level->chart, 0.f, 0.f, by * e->rails.a, by * e->rails.b);
-    }
+    for (int sign = -1; sign <= 1; sign += 2)
+      for (int row = -rails.rows; row <= rails.rows; row++) {
+        float along = (float)(sign * px), across = (float)row * rails.gauge;
+        made[(*count)++] =
+            rc_copy_of_move(&level->chart, 0.f, 0.f, along * rails.a - across * rails.b,
+                            along * rails.b + across * rails.a);
+      }
   *moves = made;
   return RECEDE_OK;
 }
 
-/* Starts that keep to the rails, from the trial first on. misfit: of the best so far. */
+/* Starts that keep to the rails, from the trial first on; *own: what the best of them, which the
+ * level then holds, costs. */
+static recede_status start_on_rails(rc_context *context, const rc_descent *e, int first, int count,
+                                    rc_pace *p, rc_level *level, rc_workspace *scratch,
+                                    rc_trial *best, double *own) {
+  starts s = {first, first, first + count, NULL, 0};
+  RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
+  RC_TRY(try_starts(context, e, &s, p, level, scratch, best, own));
+  *own += price_of_broken_lines(e, level, best);
+  return RECEDE_OK;
+}
+
+/* Along the rails alone and, where boards have one width, board by board. misfit: of the best start
+ * so far. */
 static recede_status try_rails(rc_context *context, rc_descent *e, int first, int count, rc_pace *p,
                                rc_level *level, rc_workspace *scratch, double misfit) {
-  starts s = {first, first, first + count, NULL, 0};
-  rc_trial best;
-  double own;
-  rc_block *mark = rc_mark(context);
-  RC_TRY(rc_trial_new(context, level, &best));
-  RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
+  rc_trial along, across;
+  double own, own_across = INFINITY;
+  int rows = e->rails.rows;
+  RC_TRY(rc_trial_new(context, level, &along));
+  RC_TRY(rc_trial_new(context, level, &across));
+  RC_TRY(rc_boards_mark(context, &e->rails, e->level_count - 1, level));
+  uint8_t *board = level->board;
   e->on_rails = true;
-  RC_TRY(try_starts(context, e, &s, p, level, scratch, &best, &own));
-  own += price_of_broken_lines(e, level, &best);
+  if (rows)
+    RC_TRY(start_on_rails(context, e, first, count, p, level, scratch, &across, &own_across));
+  e->rails.rows = 0, level->board = NULL;
+  RC_TRY(start_on_rails(context, e, first, count, p, level, scratch, &along, &own));
+  if (own_across < FAVOUR_OF_BOARDS * own) {
+    own = own_across;
+    e->rails.rows = rows, level->board = board;
+    rc_trial_restore(level, &across);
+  }
   e->on_rails = own < FAVOUR_OF_LINES * misfit && nearly_all_have_copies(level);
-  rc_release(context, mark); /* what is kept the level holds */
+  if (!e->on_rails) level->board = NULL;
   return RECEDE_OK;
 }
 
@@ -164,6 +194,7 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   /* Where lines cross the hole there are things that go on as a whole. But whole copies that break
    * lines fit well, and must not win over those that continue them. */
   int with_lines = e->line_count ? half : 0, on_rails = rc_runs(&e->rails) ? half : 0;
+  int rails_tried = e->rails.rows ? 2 : 1;
   int trials = plain + with_lines, whole = e->params->engine_whole ? with_lines / 2 : 0;
   starts by_chance = {0, plain, plain, NULL, 0};
   starts along_lines = {plain, trials - whole, trials, NULL, 0};
@@ -173,7 +204,7 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
     return rc_iterate(context, e, exponent, 0, 0, iterations, &p, level, scratch);
   }
   rc_pace p = {0, work_of(plain, iterations) + work_of(with_lines, iterations) +
-                      work_of(on_rails, iterations)};
+                      rails_tried * work_of(on_rails, iterations)};
   RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(try_starts(context, e, &by_chance, &p, level, scratch, &best, &misfit));
   if (e->line_count) misfit += price_of_broken_lines(e, level, &best);

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "synthesis/coarsest.h"
+#include "synthesis/gauge.h"
 #include "synthesis/lock.h"
 #include "synthesis/rest.h"
 #include "synthesis/vote.h"
@@ -26,12 +27,13 @@ static recede_status run_level(rc_context *context, rc_descent *e, int exponent,
   if (exponent == e->level_count - 1) {
     RC_TRY(rc_run_coarsest(context, e, level, &scratch));
   } else {
+    if (e->on_rails) RC_TRY(rc_boards_mark(context, &e->rails, exponent, level));
     if (e->continue_lines) RC_TRY(rc_lines_lock(context, e->lines, e->line_count, exponent, level));
     rc_pace p = {0, rc_iterations_at(e, exponent)};
     RC_TRY(rc_iterate(context, e, exponent, 0, 0, p.total, &p, level, &scratch));
   }
   if (exponent == last_searched(e)) RC_TRY(rc_settle(context, e, level, &scratch));
-  level->locked = NULL;
+  level->locked = NULL, level->board = NULL;
   rc_release(context, mark);
   return RECEDE_OK;
 }

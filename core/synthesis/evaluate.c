@@ -36,6 +36,17 @@ static int32_t unpack_at_border(const rc_level *level, int x, int y, rc_patch *p
   return sum;
 }
 
+/* Other boards weigh nothing. */
+static int32_t keep_board(const rc_level *level, int x, int y, rc_patch *patch) {
+  int32_t sum = 0;
+  for (int i = 0; i < RC_PATCH_LANES; i++) {
+    if (!patch->weight[i]) continue; /* padding, or outside the picture */
+    if (!rc_level_same_board(level, x, y, x + rc_lane_x[i], y + rc_lane_y[i])) patch->weight[i] = 0;
+    sum += patch->weight[i];
+  }
+  return sum;
+}
+
 void rc_query_init(rc_query *query) { memset(query, 0, sizeof *query); }
 
 static void unpack(const rc_level *level, rc_query *query) {
@@ -45,6 +56,7 @@ static void unpack(const rc_level *level, rc_query *query) {
   int32_t sum =
       inside ? unpack_inside(level, (size_t)y * (size_t)level->width + (size_t)x, &query->patch)
              : unpack_at_border(level, x, y, &query->patch);
+  if (level->board) sum = keep_board(level, x, y, &query->patch);
   query->per_weight = sum ? 1.f / (float)sum : 0.f;
   query->unpacked = true;
 }

@@ -12,6 +12,7 @@
 #include "synthesis/compose.h"
 #include "synthesis/descent.h"
 #include "synthesis/detail.h"
+#include "synthesis/gauge.h"
 #include "synthesis/iterate.h"
 #include "synthesis/near.h"
 #include "synthesis/problem.h"
@@ -140,7 +141,9 @@ static recede_status find_lines(rc_context *context, rc_descent *e) {
   if (e->params->engine_boundary)
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
                             &e->line_count, &e->rails, &e->boundary));
-  if (!e->params->engine_rails) e->rails = (rc_rails){0, 0};
+  if (!e->params->engine_rails) e->rails = (rc_rails){0};
+  if (rc_runs(&e->rails) && e->params->engine_gauge)
+    RC_TRY(rc_gauge_find(context, e->images, e->flags, e->level_count, &e->chart, &e->rails));
   return RECEDE_OK;
 }
 
@@ -243,7 +246,7 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int ch
   /* Of the coarser levels, 1/3 of the finest, only the fields stay; the coarsest alone has sources
    * in order, but it may be the only one. */
   uint64_t levels = pixels * (4 + 1 + 1 + 4) + box * (12 + 4 + 1 + 1) * 4 / 3;
-  uint64_t search = box * (12 + 4 + 4) * 2 + pixels * 4;
+  uint64_t search = box * (12 + 4 + 4) * 2 + pixels * (4 + 1);
   uint64_t pads = rows * (40 * c + 20) + 16 * c * (columns + 5);
   uint64_t composition = box * (12 * c + 4) + pads;
   uint64_t detail = (grown < pixels ? grown : pixels) * 12 * c + pixels;

@@ -54,7 +54,7 @@ static rc_search search_of(const rc_descent *e, int exponent, int trial, int ite
                      .periods = e->periods,
                      .period_count = coarsest && !e->on_rails ? e->period_count : 0,
                      .period_tries = PERIOD_TRIES,
-                     .rails = e->on_rails ? &e->rails : NULL,
+                     .rails = e->on_rails ? rc_rails_coarser(e->rails, exponent) : (rc_rails){0},
                      .rail_tolerance = coarsest ? 0.f : RAIL_TOLERANCE_PX};
 }
 

@@ -49,6 +49,7 @@ typedef struct rc_level {
   rc_copy *field;                      /* box_w * box_h, row by row; NAN a = none yet */
   float *cost;                         /* of the field's copies without the price of incoherence */
   uint8_t *locked;                     /* box pixels whose copy stays; NULL = none */
+  uint8_t *board;                      /* of each pixel, modulo 256; NULL = there are none */
   uint8_t *classes;                    /* class of each box pixel */
   int32_t lane_offset[RC_PATCH_LANES]; /* of each lane of a patch, in pixels */
   rc_ranges ranges;
@@ -70,6 +71,13 @@ static inline float rc_level_w(const rc_level *level, float x, float y) {
 }
 static inline size_t rc_level_at(const rc_level *level, int x, int y) {
   return (size_t)(y - level->box.y0) * (size_t)level->box_w + (size_t)(x - level->box.x0);
+}
+/* Things that are made up of boards are filled board by board. */
+static inline bool rc_level_same_board(const rc_level *level, int x, int y, int other_x,
+                                       int other_y) {
+  size_t width = (size_t)level->width;
+  return !level->board || level->board[(size_t)y * width + (size_t)x] ==
+                              level->board[(size_t)other_y * width + (size_t)other_x];
 }
 static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
   return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & RC_TARGET) != 0;

@@ -88,7 +88,7 @@ static double mean_of(const change *c) {
 static rc_rails turned(rc_rails rails, float tangent) {
   float a = rails.a - tangent * rails.b, b = rails.b + tangent * rails.a;
   float length = sqrtf(a * a + b * b);
-  return (rc_rails){a / length, b / length};
+  return (rc_rails){.a = a / length, .b = b / length};
 }
 
 /* Turned to where moves along change least. */
@@ -121,7 +121,7 @@ static rc_rails median_of(const rc_chart *chart, const rc_crossing *lines, int c
       if (tangent[i] < tangent[least]) least = i;
     median = tangent[least], tangent[least] = INFINITY, so_far += weight[least];
   }
-  return turned((rc_rails){first.a, first.b}, median);
+  return turned((rc_rails){.a = first.a, .b = first.b}, median);
 }
 
 rc_copy rc_copy_of_move(const rc_chart *chart, float x, float y, float a, float b) {
@@ -138,8 +138,19 @@ rc_copy rc_copy_on_rails(const rc_rails *rails, const rc_chart *chart, float tol
   rc_chart flat = rc_chart_flat(*chart);
   rc_copy move = rc_copy_between(&flat, x, y, to_x, to_y);
   float off = move.b * rails->a - move.a * rails->b;
+  if (rails->rows) {
+    float rows = rc_round(off / rails->gauge), most = (float)rails->rows;
+    off -= fminf(fmaxf(rows, -most), most) * rails->gauge;
+  }
   float too_far = off > tolerance ? off - tolerance : off < -tolerance ? off + tolerance : 0.f;
   return rc_copy_of_move(chart, x, y, move.a + too_far * rails->b, move.b - too_far * rails->a);
+}
+
+static bool runs(const view *v, rc_rails r) {
+  change along = {0, 0}, across = {0, 0};
+  look(v, RUN_PX * r.a, RUN_PX * r.b, &along);
+  look(v, -RUN_PX * r.b, RUN_PX * r.a, &across);
+  return mean_of(&along) < MOST_ALONG * mean_of(&across);
 }
 
 static bool repeats(const view *v, rc_rails r) {
@@ -162,23 +173,41 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
                             rc_rails *rails) {
   int coarse = levels - 1, fine = coarse > FINER_BY ? coarse - FINER_BY : 0;
   float reach_px = 0;
-  change along = {0, 0}, across = {0, 0};
   view *v;
-  *rails = (rc_rails){0, 0};
+  *rails = (rc_rails){0};
   if (!*count) return RECEDE_OK;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, 1, &v));
   rc_rails r = median_of(chart, lines, *count);
   set_view(&images[coarse], &masks[coarse], rc_chart_coarser(*chart, coarse), NULL, v);
-  look(v, RUN_PX * r.a, RUN_PX * r.b, &along);
-  look(v, -RUN_PX * r.b, RUN_PX * r.a, &across);
-  if (mean_of(&along) < MOST_ALONG * mean_of(&across)) {
+  if (runs(v, r)) {
     for (int i = 0; i < *count; i++) reach_px = fmaxf(reach_px, rc_crossing_length(&lines[i]));
     r = sharpened(v, r, reach_px / (float)(1 << coarse), COARSE_TURN);
     set_view(&images[fine], &masks[fine], rc_chart_coarser(*chart, fine), NULL, v);
     *rails = sharpened(v, r, reach_px / (float)(1 << fine), FINE_TURN);
   } else if (repeats(v, r)) {
     *count = 0;
+  }
+  rc_release(context, mark);
+  return rc_poll(context);
+}
+
+static rc_boundary other_side(rc_boundary b) { return (rc_boundary){-b.nx, -b.ny, -b.at}; }
+
+recede_status rc_runs_on_both_sides(rc_context *context, const rc_image *images,
+                                    const rc_mask *masks, int levels, const rc_chart *chart,
+                                    const rc_rails *rails, const rc_boundary *boundary,
+                                    bool *result) {
+  int coarsest = levels - 1;
+  rc_chart here = rc_chart_coarser(*chart, coarsest);
+  rc_boundary side = rc_boundary_coarser(*boundary, coarsest);
+  view *v;
+  *result = rc_runs(rails);
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, 1, &v));
+  for (int i = 0; i < 2 && *result; i++, side = other_side(side)) {
+    set_view(&images[coarsest], &masks[coarsest], here, &side, v);
+    *result = runs(v, *rails);
   }
   rc_release(context, mark);
   return rc_poll(context);
@@ -194,9 +223,9 @@ recede_status rc_repeats_beside(rc_context *context, const rc_image *images, con
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, 1, &v));
   if (boundary->nx * (x - chart->x0) + boundary->ny * (y - chart->y0) + boundary->at < 0)
-    b = (rc_boundary){-b.nx, -b.ny, -b.at};
+    b = other_side(b);
   set_view(&images[coarsest], &masks[coarsest], rc_chart_coarser(*chart, coarsest), &b, v);
-  *result = repeats(v, (rc_rails){d.a, d.b});
+  *result = repeats(v, (rc_rails){.a = d.a, .b = d.b});
   rc_release(context, mark);
   return rc_poll(context);
 }

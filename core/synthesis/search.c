@@ -41,7 +41,9 @@ static void find_neighbours(const scan *s, rc_box tile, pixel_state *state) {
   state->neighbour_count = 0;
   for (int i = 0; i < 4; i++) {
     int x = state->x + dx[i], y = state->y + dy[i];
-    if (!rc_inside(level->width, level->height, x, y) || !rc_level_is_target(level, x, y)) continue;
+    if (!rc_inside(level->width, level->height, x, y) || !rc_level_is_target(level, x, y) ||
+        !rc_level_same_board(level, x, y, state->x, state->y))
+      continue;
     bool own = x >= tile.x0 && x < tile.x1 && y >= tile.y0 && y < tile.y1;
     state->neighbours[state->neighbour_count++] =
         (own ? level->field : s->old)[rc_level_at(level, x, y)];
@@ -93,9 +95,9 @@ static rc_copy copy_from(const scan *s, const pixel_state *state, float x, float
   const rc_search *search = s->search;
   const rc_chart *chart = &s->level->chart;
   const rc_query *query = &state->query;
-  return search->rails ? rc_copy_on_rails(search->rails, chart, search->rail_tolerance, query->x,
-                                          query->y, x, y)
-                       : rc_copy_between(chart, query->x, query->y, x, y);
+  return rc_runs(&search->rails) ? rc_copy_on_rails(&search->rails, chart, search->rail_tolerance,
+                                                    query->x, query->y, x, y)
+                                 : rc_copy_between(chart, query->x, query->y, x, y);
 }
 
 static void try_nearby(const scan *s, pixel_state *state) {

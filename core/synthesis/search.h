@@ -16,9 +16,8 @@ typedef struct rc_search {
   int anywhere;           /* random candidates from all sources of the right scale */
   const rc_copy *periods; /* candidates to add to the pixel's copy (flat) */
   int period_count, period_tries;
-  const rc_rails
-      *rails; /* candidates by chance keep to them, give or take so many px; NULL: free */
-  float rail_tolerance;
+  rc_rails rails;       /* candidates by chance keep to them if they run */
+  float rail_tolerance; /* px, where w = 1 */
 } rc_search;
 
 /* One pass over the level's field. old is scratch of box_w * box_h. */

@@ -70,7 +70,7 @@ static void vote_pixel(const ballot *b, int x, int y) {
         continue;
       size_t at = rc_level_at(level, px, py);
       float weight = b->weight[at];
-      if (!(weight > 0.f)) continue;
+      if (!(weight > 0.f) || !rc_level_same_board(level, x, y, px, py)) continue;
       if (!rc_same_copy(level->field[at], p.copy)) { /* neighbours mostly agree */
         p.copy = level->field[at];
         rc_place place =

@@ -13,11 +13,15 @@
 #define MOST_RING 200
 /* Not all sources, so that several starts differ. */
 #define CANDIDATES 2000
-#define MOST_COPIES 16
+#define MOST_COPIES 48
 /* A candidate is no better than none where it differs by more, in variances. */
 #define NO_FIT 2.f
 /* One more copy must take so much off the ring's misfit. */
 #define LEAST_GAIN .05
+/* Of boards each wants its own. */
+#define LEAST_GAIN_OF_BOARDS .01
+/* What the ring beside other boards counts: a board may lie wholly in the hole. */
+#define OTHER_BOARD .001f
 /* Ratios of scale that are compared at all. */
 #define LEAST_RATIO .5f
 #define MOST_RATIO 2.f
@@ -101,14 +105,14 @@ static void weigh(void *user, int item, int thread) {
 
 /* One after the other the candidate that helps most. */
 static recede_status choose(rc_context *context, whole *w, int most) {
-  double sum = 0;
+  double sum = 0, least_gain = w->level->board ? LEAST_GAIN_OF_BOARDS : LEAST_GAIN;
   for (int i = 0; i < w->ring_count; i++) sum += w->least[i] = NO_FIT * w->level->variance;
   while (w->chosen_count < most && w->candidate_count) {
     const candidate *best = w->candidates;
     RC_TRY(rc_parallel(context, w->candidate_count, weigh, w));
     for (int n = 1; n < w->candidate_count; n++)
       if (w->candidates[n].gain > best->gain) best = &w->candidates[n];
-    if (w->chosen_count && best->gain < LEAST_GAIN * sum) break;
+    if (w->chosen_count && best->gain < least_gain * sum) break;
     sum -= best->gain;
     for (int i = 0; i < w->ring_count; i++) w->least[i] = fminf(w->least[i], best->misfit[i]);
     w->chosen[w->chosen_count++] = best;
@@ -123,8 +127,10 @@ static void label(const whole *w, int x, int y) {
   float misfit[MOST_COPIES] = {0}, least = INFINITY;
   rc_query query;
   for (int i = 0; i < w->ring_count; i++) {
-    float dx = (float)(w->ring[i] % level->width - x), dy = (float)(w->ring[i] / level->width - y);
+    int ring_x = w->ring[i] % level->width, ring_y = w->ring[i] / level->width;
+    float dx = (float)(ring_x - x), dy = (float)(ring_y - y);
     float weight = 1.f / (dx * dx + dy * dy);
+    if (!rc_level_same_board(level, x, y, ring_x, ring_y)) weight *= OTHER_BOARD;
     for (int n = 0; n < w->chosen_count; n++) misfit[n] += weight * w->chosen[n]->misfit[i];
   }
   level->field[at] = (rc_copy){NAN, NAN, NAN};

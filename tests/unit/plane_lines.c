@@ -149,34 +149,56 @@ static double joints(double u, double v, int k) {
   return v - floor(v) < .14 ? 0 : 1;
 }
 
-/* The part of the joints between boards that are dark where they must be. */
-static double joints_kept(const char *settings) {
-  double kept = 0, all = 0;
-  picture rows = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, joints, 16, 40, 0);
+/* Of the hole, for boards seen at a slant: the part of the joints between them that is dark, and the
+ * dark pixels beside joints over those that there were, the boards' ends. */
+typedef struct boards_made {
+  double joints, ends;
+} boards_made;
+
+static boards_made fill_boards(double slant_deg, const char *settings) {
+  double kept = 0, all = 0, dark = 0, ends = 0;
+  picture rows = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, joints, 16, slant_deg, 0);
   for (int seed = 0; seed < 2; seed++) {
-    task t = task_new(picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, boards, 16, 40, 0), settings);
-    t.params.slant_deg = 40, t.params.seed = seed;
+    picture p = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, boards, 16, slant_deg, 0);
+    task t = task_new(p, settings);
+    t.params.slant_deg = slant_deg, t.params.seed = seed;
     task_hole(&t, hole);
     task_succeeds(&t);
     for (int y = hole.y0; y < hole.y1; y++)
       for (int x = hole.x0; x < hole.x1; x++) {
-        if (picture_get(&rows, x, y, 0) > .1f) continue;
-        all++;
-        kept += picture_get(&t.result, x, y, 0) < .3f;
+        bool is_dark = picture_get(&t.result, x, y, 0) < .3f;
+        float open = picture_get(&rows, x, y, 0);
+        if (open < .1f) all++, kept += is_dark;
+        if (open > .95f) dark += is_dark, ends += picture_get(&p, x, y, 0) < .3f;
       }
     task_clear(&t);
   }
   picture_clear(&rows);
-  g_test_message("%s: %.3f of the joints", settings, kept / all);
-  return kept / all;
+  g_test_message("%s, slant %.0f: %.3f of the joints, ends %.2f of the true ones", settings,
+                 slant_deg, kept / all, dark / ends);
+  return (boards_made){kept / all, dark / ends};
 }
 
 static void boards_run(void) {
-  double flat = joints_kept("quality=draft surface=flat");
-  double raised = joints_kept("quality=draft surface=raised");
-  g_assert_cmpfloat(flat, >, .85);
-  g_assert_cmpfloat(raised, >, .85);
-  g_assert_cmpfloat(flat, >, joints_kept("quality=draft surface=flat engine-rails=0") + .1);
+  boards_made flat = fill_boards(40, "quality=draft surface=flat");
+  boards_made raised = fill_boards(40, "quality=draft surface=raised");
+  g_assert_cmpfloat(flat.joints, >, .85);
+  g_assert_cmpfloat(raised.joints, >, .85);
+  boards_made free = fill_boards(40, "quality=draft surface=flat engine-rails=0");
+  g_assert_cmpfloat(flat.joints, >, free.joints + .1);
+}
+
+/* Where all have one width: light and dark ones meet at ends, and none is bent to suit the others.
+ */
+static void boards_are_filled_one_by_one(void) {
+  for (int slant_deg = 0; slant_deg <= 20; slant_deg += 20) {
+    boards_made one_by_one = fill_boards(slant_deg, "quality=draft");
+    g_assert_cmpfloat(one_by_one.joints, >, .95);
+    g_assert_cmpfloat(one_by_one.ends, >, .7);
+    g_assert_cmpfloat(one_by_one.ends, <, 3);
+    boards_made together = fill_boards(slant_deg, "quality=draft engine-gauge=0");
+    g_assert_cmpfloat(one_by_one.joints, >, together.joints + .07);
+  }
 }
 
 /* Tiles, each of its own shade. */
@@ -278,6 +300,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/lines/others", others_do_not);
   g_test_add_func("/lines/markings", markings_keep_both_edges);
   g_test_add_func("/lines/boards", boards_run);
+  g_test_add_func("/lines/one-by-one", boards_are_filled_one_by_one);
   g_test_add_func("/lines/tiles", tiles_do_not);
   g_test_add_func("/lines/sides", textures_keep_to_their_sides);
   g_test_add_func("/lines/same-bytes", same_for_threads);
