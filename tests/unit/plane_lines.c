@@ -149,8 +149,8 @@ static double joints(double u, double v, int k) {
   return v - floor(v) < .14 ? 0 : 1;
 }
 
-/* Of the hole, for boards seen at a slant: the part of the joints between them that is dark, and the
- * dark pixels beside joints over those that there were, the boards' ends. */
+/* Of the hole, for boards seen at a slant: the part of the joints between them that is dark, and
+ * the dark pixels beside joints over those that there were, the boards' ends. */
 typedef struct boards_made {
   double joints, ends;
 } boards_made;
