@@ -19,10 +19,10 @@
 /* Largest weight of a pixel: 4 * 255^2 * 64 * 81 < 2^31. */
 #define RC_WEIGHT_ONE 64
 
-/* One patch of the target, unpacked once and compared with many candidates. */
+/* One patch of the target, gathered once and compared with many candidates. */
 typedef struct rc_patch {
-  int16_t value[RC_COMPONENTS][RC_PATCH_LANES];
-  int16_t weight[RC_PATCH_LANES]; /* 0..RC_WEIGHT_ONE */
+  uint32_t pixel[RC_PATCH_LANES];
+  int16_t weight[RC_PATCH_LANES][RC_COMPONENTS]; /* 0..RC_WEIGHT_ONE, the same for all of a pixel */
 } rc_patch;
 
 /* Where a candidate's pixels lie: pixel (ox, oy) of the patch at origin[sy * stride + sx],

@@ -11,10 +11,11 @@ static uint32_t distance(const rc_patch *patch, const rc_footprint *footprint, u
     uint32_t pixel = footprint->origin[(ptrdiff_t)sy * footprint->stride + sx];
     int32_t square = 0;
     for (int k = 0; k < RC_COMPONENTS; k++) {
-      int32_t difference = patch->value[k][i] - (int32_t)(pixel >> 8 * k & 255);
+      int32_t difference =
+          (int32_t)(patch->pixel[i] >> 8 * k & 255) - (int32_t)(pixel >> 8 * k & 255);
       square += difference * difference;
     }
-    sum += (uint32_t)(patch->weight[i] * square);
+    sum += (uint32_t)(patch->weight[i][0] * square);
   }
   return sum;
 }

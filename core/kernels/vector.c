@@ -18,18 +18,16 @@ static uint32_t chunk(const rc_patch *restrict patch, const rc_footprint *restri
     index[i] = ((y + yx * lane_x[i] + yy * lane_y[i]) >> 16) * stride +
                ((x + xx * lane_x[i] + xy * lane_y[i]) >> 16);
   for (int i = 0; i < RC_PATCH_CHUNK; i++) pixels[i] = origin[index[i]];
-  const int16_t *restrict value0 = patch->value[0] + first;
-  const int16_t *restrict value1 = patch->value[1] + first;
-  const int16_t *restrict value2 = patch->value[2] + first;
-  const int16_t *restrict value3 = patch->value[3] + first;
-  const int16_t *restrict weight = patch->weight + first;
+  /* Byte by byte, whose order in a pixel does not matter. Differences times weights fit 16 bits, of
+   * which processors multiply and add pairs at once. */
+  const uint8_t *restrict target = (const uint8_t *)(patch->pixel + first);
+  const uint8_t *restrict found = (const uint8_t *)pixels;
+  const int16_t *restrict weight = patch->weight[first];
   int32_t sum = 0;
-  for (int i = 0; i < RC_PATCH_CHUNK; i++) {
-    int32_t p = value0[i] - (int32_t)(pixels[i] & 255);
-    int32_t q = value1[i] - (int32_t)(pixels[i] >> 8 & 255);
-    int32_t r = value2[i] - (int32_t)(pixels[i] >> 16 & 255);
-    int32_t s = value3[i] - (int32_t)(pixels[i] >> 24);
-    sum += weight[i] * (p * p + q * q + r * r + s * s);
+  for (int i = 0; i < RC_PATCH_CHUNK * RC_COMPONENTS; i++) {
+    int16_t difference = (int16_t)(target[i] - found[i]);
+    int16_t weighted = (int16_t)(difference * weight[i]);
+    sum += difference * weighted;
   }
   return (uint32_t)sum;
 }

@@ -3,35 +3,36 @@
 #include <math.h>
 #include <string.h>
 
+static void set_lane(rc_patch *patch, int lane, uint32_t pixel, uint8_t weight) {
+  patch->pixel[lane] = pixel;
+  for (int k = 0; k < RC_COMPONENTS; k++) patch->weight[lane][k] = weight;
+}
+
 /* Away from the border all lanes lie in the picture. */
-static int32_t unpack_inside(const rc_level *level, size_t at, rc_patch *patch) {
+static int32_t gather_inside(const rc_level *level, size_t at, rc_patch *patch) {
   const uint32_t *pixels = level->pixels + at;
   const uint8_t *weights = level->weight + at;
   int32_t sum = 0;
   for (int chunk = 0; chunk < RC_PATCH_LANES; chunk += RC_PATCH_CHUNK)
     for (int i = chunk; i < chunk + RC_PATCH_PIXELS / 3; i++) {
-      uint32_t pixel = pixels[level->lane_offset[i]];
-      for (int k = 0; k < RC_COMPONENTS; k++) patch->value[k][i] = (int16_t)(pixel >> 8 * k & 255);
-      patch->weight[i] = weights[level->lane_offset[i]];
-      sum += patch->weight[i];
+      int32_t offset = level->lane_offset[i];
+      set_lane(patch, i, pixels[offset], weights[offset]);
+      sum += weights[offset];
     }
   return sum;
 }
 
-static int32_t unpack_at_border(const rc_level *level, int x, int y, rc_patch *patch) {
+static int32_t gather_at_border(const rc_level *level, int x, int y, rc_patch *patch) {
   int32_t sum = 0;
   for (int i = 0; i < RC_PATCH_LANES; i++) {
     int px = x + rc_lane_x[i], py = y + rc_lane_y[i];
-    for (int k = 0; k < RC_COMPONENTS; k++) patch->value[k][i] = 0;
-    patch->weight[i] = 0;
+    set_lane(patch, i, 0, 0);
     if (i % RC_PATCH_CHUNK >= RC_PATCH_PIXELS / 3 ||
         !rc_inside(level->width, level->height, px, py))
       continue;
     size_t at = (size_t)py * (size_t)level->width + (size_t)px;
-    uint32_t pixel = level->pixels[at];
-    for (int k = 0; k < RC_COMPONENTS; k++) patch->value[k][i] = (int16_t)(pixel >> 8 * k & 255);
-    patch->weight[i] = level->weight[at];
-    sum += patch->weight[i];
+    set_lane(patch, i, level->pixels[at], level->weight[at]);
+    sum += level->weight[at];
   }
   return sum;
 }
@@ -40,25 +41,26 @@ static int32_t unpack_at_border(const rc_level *level, int x, int y, rc_patch *p
 static int32_t keep_board(const rc_level *level, int x, int y, rc_patch *patch) {
   int32_t sum = 0;
   for (int i = 0; i < RC_PATCH_LANES; i++) {
-    if (!patch->weight[i]) continue; /* padding, or outside the picture */
-    if (!rc_level_same_board(level, x, y, x + rc_lane_x[i], y + rc_lane_y[i])) patch->weight[i] = 0;
-    sum += patch->weight[i];
+    if (!patch->weight[i][0]) continue; /* padding, or outside the picture */
+    if (!rc_level_same_board(level, x, y, x + rc_lane_x[i], y + rc_lane_y[i]))
+      set_lane(patch, i, patch->pixel[i], 0);
+    sum += patch->weight[i][0];
   }
   return sum;
 }
 
 void rc_query_init(rc_query *query) { memset(query, 0, sizeof *query); }
 
-static void unpack(const rc_level *level, rc_query *query) {
+static void gather(const rc_level *level, rc_query *query) {
   int x = query->px, y = query->py;
   bool inside = x >= RC_PATCH_RADIUS && y >= RC_PATCH_RADIUS &&
                 x < level->width - RC_PATCH_RADIUS && y < level->height - RC_PATCH_RADIUS;
   int32_t sum =
-      inside ? unpack_inside(level, (size_t)y * (size_t)level->width + (size_t)x, &query->patch)
-             : unpack_at_border(level, x, y, &query->patch);
+      inside ? gather_inside(level, (size_t)y * (size_t)level->width + (size_t)x, &query->patch)
+             : gather_at_border(level, x, y, &query->patch);
   if (level->board) sum = keep_board(level, x, y, &query->patch);
   query->per_weight = sum ? 1.f / (float)sum : 0.f;
-  query->unpacked = true;
+  query->gathered = true;
 }
 
 static bool has_boundary(const rc_level *level) {
@@ -75,7 +77,7 @@ static float side_of(const rc_level *level, float x, float y) {
 void rc_query_set(const rc_level *level, int x, int y, rc_query *query) {
   query->px = x;
   query->py = y;
-  query->unpacked = false;
+  query->gathered = false;
   query->x = rc_level_x(level, x);
   query->y = rc_level_y(level, y);
   query->side = has_boundary(level) ? side_of(level, query->x, query->y) : 0.f;
@@ -145,7 +147,7 @@ float rc_query_cost(const rc_level *level, const rc_kernels *kernels, rc_query *
   }
   if (price >= limit || !set_footprint(level, &level->chart, copy, place, &footprint))
     return RC_NO_COST;
-  if (!query->unpacked) unpack(level, query);
+  if (!query->gathered) gather(level, query);
   float most = query->per_weight > 0.f ? (limit - price) / query->per_weight : 0.f;
   uint32_t stop = most < 4e9f ? (uint32_t)most + 1u : 4000000000u;
   return price + (float)kernels->distance(&query->patch, &footprint, stop) * query->per_weight;

@@ -27,7 +27,7 @@ typedef struct rc_query {
   float x, y;       /* relative to the chart's origin */
   float low, high;  /* ratios allowed here */
   int32_t px, py;
-  bool unpacked; /* patch and per_weight are set: not before the first distance is asked for */
+  bool gathered; /* patch and per_weight are set: not before the first distance is asked for */
 } rc_query;
 
 /* Once per query, before the first set: the padding lanes must weigh nothing. */

@@ -50,11 +50,10 @@ static void fill_patch(uint32_t item, rc_patch *patch) {
   for (int i = 0; i < RC_PATCH_LANES; i++) {
     uint32_t bits = draw(item, 100u + (uint32_t)i);
     bool padding = i % RC_PATCH_CHUNK >= RC_PATCH_PIXELS / 3;
-    for (int k = 0; k < RC_COMPONENTS; k++)
-      patch->value[k][i] = extreme ? 255 : (int16_t)(bits >> 8 * k & 255);
+    patch->pixel[i] = extreme ? UINT32_MAX : bits;
     bits = draw(item, 300u + (uint32_t)i);
-    patch->weight[i] = extreme ? RC_WEIGHT_ONE : (int16_t)(bits % (RC_WEIGHT_ONE + 1));
-    if (padding) patch->weight[i] = 0;
+    int16_t weight = extreme ? RC_WEIGHT_ONE : (int16_t)(bits % (RC_WEIGHT_ONE + 1));
+    for (int k = 0; k < RC_COMPONENTS; k++) patch->weight[i][k] = padding ? 0 : weight;
   }
 }
 
