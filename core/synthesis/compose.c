@@ -22,6 +22,8 @@
 /* Half sweeps, red or black, that are done at once, and the rows of a band: a few hundred KB. */
 #define AT_ONCE 16
 #define BAND_ROWS 64
+/* And columns whose edges are read at once: 24 bytes each. */
+#define COLUMNS 64
 /* Sources finer than this many px per px, the mean of both directions, are sampled one level
  * coarser. */
 #define MIP_AT 1.6f
@@ -213,32 +215,49 @@ static void drive_row(void *user, int item, int thread) {
   }
 }
 
-/* Pixels without edges are none of the join's. */
-static void relax(const composition *c, size_t edge, const float *restrict drive,
+/* What the edges of some columns count, the same for all channels. */
+typedef struct edge_counts {
+  float left[COLUMNS], right[COLUMNS], up[COLUMNS], down[COLUMNS], all[COLUMNS];
+  float step[COLUMNS]; /* 0 for pixels without edges, which are none of the join's and stay 0 */
+} edge_counts;
+
+static void count_edges(const composition *c, size_t edge, int columns, edge_counts *counts) {
+  const uint8_t *l = c->edges[0] + edge, *r = c->edges[1] + edge, *u = c->edges[2] + edge,
+                *d = c->edges[3] + edge;
+  for (int i = 0; i < columns; i++) {
+    int edges = l[i] + r[i] + u[i] + d[i];
+    counts->left[i] = (float)l[i], counts->right[i] = (float)r[i];
+    counts->up[i] = (float)u[i], counts->down[i] = (float)d[i];
+    counts->all[i] = (float)edges + c->screening;
+    counts->step[i] = (float)(edges > 0) * (c->relaxation / counts->all[i]);
+  }
+}
+
+static void relax(const edge_counts *restrict counts, int columns, const float *restrict drive,
                   const float *restrict left, const float *restrict up, const float *restrict down,
                   float *restrict own) {
-  const uint8_t *restrict l = c->edges[0] + edge, *restrict r = c->edges[1] + edge,
-                          *restrict u = c->edges[2] + edge, *restrict d = c->edges[3] + edge;
-  const float *right = left + 1;
-  float screening = c->screening, relaxation = c->relaxation;
-  for (int i = 0; i < c->half_w; i++) {
-    int edges = l[i] + r[i] + u[i] + d[i];
-    float all = (float)edges + screening;
-    float sum = drive[i] - all * own[i] + (float)l[i] * left[i] + (float)r[i] * right[i] +
-                (float)u[i] * up[i] + (float)d[i] * down[i];
-    float relaxed = own[i] + relaxation / all * sum;
-    own[i] = edges ? relaxed : own[i];
+  for (int i = 0; i < columns; i++) {
+    float sum = drive[i] - counts->all[i] * own[i] + counts->left[i] * left[i] +
+                counts->right[i] * left[i + 1] + counts->up[i] * up[i] + counts->down[i] * down[i];
+    own[i] += counts->step[i] * sum;
   }
 }
 
 static void relax_row(const composition *c, int row, int half_sweep) {
   int parity = (row + half_sweep) & 1;
   float *all = c->correction;
-  for (int k = 0; k < c->channels; k++) {
-    size_t own = half_row(c, row, parity, k);
-    relax(c, half_edges(c, row, parity), c->drive + own,
-          all + half_row(c, row, !parity, k) - !parity, all + half_row(c, row - 1, parity, k),
-          all + half_row(c, row + 1, parity, k), all + own);
+  edge_counts counts;
+  for (int first = 0; first < c->half_w; first += COLUMNS) {
+    int columns = c->half_w - first < COLUMNS ? c->half_w - first : COLUMNS;
+    count_edges(c, half_edges(c, row, parity) + (size_t)first, columns, &counts);
+    for (int k = 0; k < c->channels; k++) {
+      size_t own = half_row(c, row, parity, k) + (size_t)first;
+      size_t across = half_row(c, row, !parity, k) + (size_t)first;
+      size_t above = half_row(c, row - 1, parity, k) + (size_t)first;
+      size_t below = half_row(c, row + 1, parity, k) + (size_t)first;
+      relax(&counts, columns, c->drive + own, all + across - !parity, all + above, all + below,
+            all + own);
+    }
   }
 }
 
