@@ -32,6 +32,20 @@ void rc_sampler_init(rc_sampler *sampler, bool bilinear) {
 
 static int clamp(int v, int count) { return v < 0 ? 0 : v >= count ? count - 1 : v; }
 
+/* The same where all pixels are inside and one more behind each row: of three channels four are
+ * summed, a whole vector. */
+static void sample_inside(const float *taps_x, const float *taps_y, const float *pixel,
+                          size_t image_row, float *value) {
+  float sum[4] = {0, 0, 0, 0};
+  for (int j = 0; j < RC_SPLINE_TAPS; j++, pixel += image_row) {
+    float row[4] = {0, 0, 0, 0};
+    for (int i = 0; i < RC_SPLINE_TAPS; i++)
+      for (int k = 0; k < 4; k++) row[k] += taps_x[i] * pixel[3 * i + k];
+    for (int k = 0; k < 4; k++) sum[k] += taps_y[j] * row[k];
+  }
+  memcpy(value, sum, 3 * sizeof *value);
+}
+
 void rc_sample(const rc_sampler *sampler, const rc_image *image, float x, float y, float *value) {
   int channels = image->channels, reach = RC_SPLINE_TAPS / 2 - 1;
   int fixed_x = (int)floorf(x * RC_SPLINE_STEPS + .5f),
@@ -43,12 +57,19 @@ void rc_sample(const rc_sampler *sampler, const rc_image *image, float x, float 
            (size_t)channels * sizeof *value);
     return;
   }
+  int left = ix - reach, top = iy - reach;
+  if (channels == 3 && left >= 0 && top >= 0 && left + RC_SPLINE_TAPS < image->width &&
+      top + RC_SPLINE_TAPS <= image->height) {
+    sample_inside(sampler->taps[step_x], sampler->taps[step_y], rc_pixel(image, left, top),
+                  3 * (size_t)image->width, value);
+    return;
+  }
   float sum[3] = {0, 0, 0};
   for (int j = 0; j < RC_SPLINE_TAPS; j++) {
     float row[3] = {0, 0, 0}, tap_y = sampler->taps[step_y][j];
-    int sy = clamp(iy + j - reach, image->height);
+    int sy = clamp(top + j, image->height);
     for (int i = 0; i < RC_SPLINE_TAPS; i++) {
-      const float *pixel = rc_pixel(image, clamp(ix + i - reach, image->width), sy);
+      const float *pixel = rc_pixel(image, clamp(left + i, image->width), sy);
       float tap = sampler->taps[step_x][i];
       for (int k = 0; k < channels; k++) row[k] += tap * pixel[k];
     }
