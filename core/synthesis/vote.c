@@ -55,32 +55,36 @@ static void weight_row(void *user, int item, int thread) {
 /* What a copy proposes for a pixel. */
 typedef struct proposal {
   rc_copy copy;
-  uint32_t pixel;
+  float value[RC_COMPONENTS];
   bool valid;
 } proposal;
+
+static void propose(const rc_level *level, rc_copy copy, int x, int y, proposal *p) {
+  uint32_t pixel = 0;
+  rc_place place = rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
+  p->copy = copy;
+  p->valid = rc_place_pixel(level, &place, &pixel);
+  for (int k = 0; k < RC_COMPONENTS; k++) p->value[k] = (float)(pixel >> 8 * k & 255);
+}
 
 static void vote_pixel(const ballot *b, int x, int y) {
   const rc_level *level = b->level;
   float sum[RC_COMPONENTS] = {0}, total = 0.f;
   proposal p = {.copy = {NAN, NAN, NAN}};
-  for (int dy = -RC_PATCH_RADIUS; dy <= RC_PATCH_RADIUS; dy += STRIDE)
-    for (int dx = -RC_PATCH_RADIUS; dx <= RC_PATCH_RADIUS; dx += STRIDE) {
-      int px = x + dx, py = y + dy;
-      if (px < level->box.x0 || px >= level->box.x1 || py < level->box.y0 || py >= level->box.y1)
-        continue;
+  for (int py = y - RC_PATCH_RADIUS; py <= y + RC_PATCH_RADIUS; py += STRIDE) {
+    if (py < level->box.y0 || py >= level->box.y1) continue;
+    for (int px = x - RC_PATCH_RADIUS; px <= x + RC_PATCH_RADIUS; px += STRIDE) {
+      if (px < level->box.x0 || px >= level->box.x1) continue;
       size_t at = rc_level_at(level, px, py);
       float weight = b->weight[at];
       if (!(weight > 0.f) || !rc_level_same_board(level, x, y, px, py)) continue;
-      if (!rc_same_copy(level->field[at], p.copy)) { /* neighbours mostly agree */
-        p.copy = level->field[at];
-        rc_place place =
-            rc_copy_place(&level->chart, p.copy, rc_level_x(level, x), rc_level_y(level, y));
-        p.valid = rc_place_pixel(level, &place, &p.pixel);
-      }
+      if (!rc_same_copy(level->field[at], p.copy)) /* neighbours mostly agree */
+        propose(level, level->field[at], x, y, &p);
       if (!p.valid) continue;
-      for (int k = 0; k < RC_COMPONENTS; k++) sum[k] += weight * (float)(p.pixel >> 8 * k & 255);
+      for (int k = 0; k < RC_COMPONENTS; k++) sum[k] += weight * p.value[k];
       total += weight;
     }
+  }
   if (!(total > 0.f)) return;
   uint32_t pixel = 0;
   for (int k = 0; k < RC_COMPONENTS; k++) pixel |= (uint32_t)(sum[k] / total + .5f) << 8 * k;
