@@ -20,19 +20,26 @@
 /* The finest level that is searched: what it settles on is composed. */
 static int last_searched(const rc_descent *e) { return rc_iterations_at(e, 0) ? 0 : 1; }
 
-static recede_status run_level(rc_context *context, rc_descent *e, int exponent, rc_level *level) {
+static recede_status search_level(rc_context *context, rc_descent *e, int exponent,
+                                  rc_level *level) {
   rc_workspace scratch;
-  rc_block *mark = rc_mark(context);
   RC_TRY(rc_workspace_new(context, e, exponent, level, &scratch));
   if (exponent == e->level_count - 1) {
     RC_TRY(rc_run_coarsest(context, e, level, &scratch));
   } else {
-    if (e->on_rails) RC_TRY(rc_boards_mark(context, &e->rails, exponent, level));
-    if (e->continue_lines) RC_TRY(rc_lines_lock(context, e->lines, e->line_count, exponent, level));
     rc_pace p = {0, rc_iterations_at(e, exponent)};
+    if (e->on_rails) RC_TRY(rc_boards_mark(context, &e->rails, exponent, level));
     RC_TRY(rc_iterate(context, e, exponent, 0, 0, p.total, &p, level, &scratch));
   }
-  if (exponent == last_searched(e)) RC_TRY(rc_settle(context, e, level, &scratch));
+  return exponent == last_searched(e) ? rc_settle(context, e, level, &scratch) : RECEDE_OK;
+}
+
+static recede_status run_level(rc_context *context, rc_descent *e, int exponent, rc_level *level) {
+  bool coarsest = exponent == e->level_count - 1;
+  rc_block *mark = rc_mark(context);
+  if (e->continue_lines && !coarsest)
+    RC_TRY(rc_lines_lock(context, e->lines, e->line_count, exponent, level));
+  if (exponent >= last_searched(e)) RC_TRY(search_level(context, e, exponent, level));
   level->locked = NULL, level->board = NULL;
   rc_release(context, mark);
   return RECEDE_OK;
@@ -47,9 +54,11 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
     double from = .1 + .6 * pow(.25, exponent), to = .1 + .6 * pow(.25, exponent - 1);
     RC_TRY(
         rc_stage(context, coarsest ? "start" : "search", coarsest ? .1 : from, exponent ? to : .8));
-    RC_TRY(rc_level_new(context, &e->images[exponent], &e->flags[exponent], &chart,
-                        &e->traits[exponent], gamma, e->gain, coarsest ? NULL : &coarser.ranges,
-                        &level));
+    RC_TRY(rc_level_new(context, &e->flags[exponent], &chart, &level));
+    if (!coarsest) level.ranges = coarser.ranges;
+    if (exponent >= last_searched(e))
+      RC_TRY(rc_level_see(context, &e->images[exponent], &e->traits[exponent], gamma, e->gain,
+                          coarsest, &level));
     level.boundary = rc_boundary_coarser(e->boundary, exponent);
     level.beside_px = BESIDE_PX / (float)(1 << exponent);
     if (!coarsest) {

@@ -178,8 +178,10 @@ static void count_magnified(rc_context *context, const rc_descent *e, const rc_l
             (unsigned long long)missing);
 }
 
-/* The guide itself, for the ablation: what the averaging of votes alone would give. */
+/* The guide itself, for the ablation: what the averaging of votes alone would give. A level that
+ * was not searched has none. */
 static void take_guide(const rc_descent *e, const rc_level *level, rc_image *residual) {
+  if (!level->pixels) return;
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
       if (!rc_level_is_target(level, x, y)) continue;

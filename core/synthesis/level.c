@@ -267,37 +267,17 @@ void rc_level_free_pixels(rc_context *context, rc_level *level) {
   RC_FREE(context, &level->order);
 }
 
-recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_mask *flags,
-                           const rc_chart *chart, const rc_traits *traits, float gamma, float gain,
-                           const rc_ranges *ranges, rc_level *level) {
-  size_t count = (size_t)image->width * (size_t)image->height;
-  class_extent extents[RC_MAX_CLASSES];
+recede_status rc_level_new(rc_context *context, const rc_mask *flags, const rc_chart *chart,
+                           rc_level *level) {
+  size_t count = (size_t)flags->width * (size_t)flags->height;
   memset(level, 0, sizeof *level);
-  level->width = image->width;
-  level->height = image->height;
+  level->width = flags->width;
+  level->height = flags->height;
   level->flags = flags->data;
   level->chart = *chart;
-  making m = {.image = image, .level = level, .gain = gain};
-  RC_TRY(RC_NEW(context, count, &level->weight));
   RC_TRY(RC_NEW(context, count, &level->room));
-  RC_TRY(RC_NEW(context, level->height, &m.moments));
-  if (traits->pixels) {
-    level->pixels = traits->pixels;
-    memcpy(level->colours, traits->colours, sizeof level->colours);
-    level->principal = true;
-  } else {
-    RC_TRY(RC_NEW(context, count, &level->pixels));
-    RC_TRY(rc_parallel(context, level->height, pack_row, &m));
-    for (int k = 0; k < 3; k++) level->colours[k][k] = 1;
-  }
   rc_distance_inside(level->flags, RC_SOURCE, level->width, level->height, true, level->room);
   RC_TRY(rc_poll(context));
-  rc_distance_inside(level->flags, RC_TARGET, level->width, level->height, false, level->weight);
-  RC_TRY(rc_poll(context));
-  set_trust(gamma, m.trust);
-  RC_TRY(rc_parallel(context, level->height, weigh_row, &m));
-  set_variance(&m);
-  RC_FREE(context, &m.moments);
   level->box = rc_box_of(flags, RC_TARGET);
   level->box_w = level->box.x1 - level->box.x0;
   level->box_h = level->box.y1 - level->box.y0;
@@ -306,12 +286,41 @@ recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_
   RC_TRY(rc_poll(context));
   size_t box = (size_t)level->box_w * (size_t)level->box_h;
   RC_TRY(RC_NEW(context, box, &level->field));
-  RC_TRY(RC_NEW(context, box, &level->cost));
-  RC_TRY(RC_NEW_ZERO(context, box, &level->classes));
-  if (!ranges) RC_TRY(rc_level_sort_sources(context, level));
-  make_classes(level);
-  if (ranges) level->ranges = *ranges;
+  return RC_NEW(context, box, &level->cost);
+}
+
+static recede_status take_pixels(rc_context *context, const rc_traits *traits, making *m) {
+  rc_level *level = m->level;
+  if (traits->pixels) {
+    level->pixels = traits->pixels;
+    memcpy(level->colours, traits->colours, sizeof level->colours);
+    level->principal = true;
+    return RECEDE_OK;
+  }
+  for (int k = 0; k < 3; k++) level->colours[k][k] = 1;
+  RC_TRY(RC_NEW(context, (size_t)level->width * (size_t)level->height, &level->pixels));
+  return rc_parallel(context, level->height, pack_row, m);
+}
+
+recede_status rc_level_see(rc_context *context, const rc_image *image, const rc_traits *traits,
+                           float gamma, float gain, bool coarsest, rc_level *level) {
+  class_extent extents[RC_MAX_CLASSES];
+  making m = {.image = image, .level = level, .gain = gain};
+  RC_TRY(RC_NEW(context, (size_t)level->width * (size_t)level->height, &level->weight));
+  RC_TRY(RC_NEW(context, level->height, &m.moments));
+  RC_TRY(take_pixels(context, traits, &m));
+  rc_distance_inside(level->flags, RC_TARGET, level->width, level->height, false, level->weight);
+  RC_TRY(rc_poll(context));
+  set_trust(gamma, m.trust);
+  RC_TRY(rc_parallel(context, level->height, weigh_row, &m));
+  set_variance(&m);
+  RC_FREE(context, &m.moments);
+  RC_TRY(RC_NEW_ZERO(context, (size_t)level->box_w * (size_t)level->box_h, &level->classes));
+  if (coarsest) {
+    RC_TRY(rc_level_sort_sources(context, level));
+    make_classes(level);
+  }
   classify(level, extents);
-  if (!ranges) set_ranges(level, extents);
-  return RECEDE_OK;
+  if (coarsest) set_ranges(level, extents);
+  return rc_poll(context);
 }

@@ -83,13 +83,15 @@ static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
   return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & RC_TARGET) != 0;
 }
 
-/* traits: the pixels, which are the level's from then on; where they have none the picture's
- * colours are, byte = value * gain + 128. gamma: a target pixel counts gamma times less for each px
- * it is deeper in the hole; 1 = the same. ranges NULL: this is the coarsest level, they are made
- * here from what sources there are. */
-recede_status rc_level_new(rc_context *context, const rc_image *image, const rc_mask *flags,
-                           const rc_chart *chart, const rc_traits *traits, float gamma, float gain,
-                           const rc_ranges *ranges, rc_level *level);
+/* What only composition asks for: room, box and an empty field. */
+recede_status rc_level_new(rc_context *context, const rc_mask *flags, const rc_chart *chart,
+                           rc_level *level);
+/* And what a search does. traits: the pixels, which are the level's from then on; where they have
+ * none the picture's colours are, byte = value * gain + 128. gamma: a target pixel counts gamma
+ * times less for each px it is deeper in the hole; 1 = the same. The coarsest level's ranges are
+ * made here from what sources there are, the others' must be set. */
+recede_status rc_level_see(rc_context *context, const rc_image *image, const rc_traits *traits,
+                           float gamma, float gain, bool coarsest, rc_level *level);
 recede_status rc_level_sort_sources(rc_context *context, rc_level *level);
 /* When a level is done: its field and ranges are all that the next finer one asks for. */
 void rc_level_free_pixels(rc_context *context, rc_level *level);

@@ -16,9 +16,9 @@ typedef struct rest {
 } rest;
 
 static bool leads_to_source(const rc_level *level, rc_copy copy, int x, int y) {
-  uint32_t pixel;
+  size_t at;
   rc_place place = rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
-  return rc_place_pixel(level, &place, &pixel);
+  return rc_place_at(level, &place, &at) && level->room[at];
 }
 
 static float w_at(const rc_level *level, int x, int y) {

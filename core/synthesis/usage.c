@@ -39,14 +39,14 @@ static void average_across(void *user, int y, int thread) {
   const averaging *a = user;
   int width = a->level->width;
   const float *from = a->price + (size_t)y * (size_t)width;
-  float *to = a->across + (size_t)y * (size_t)width;
+  float *restrict to = a->across + (size_t)y * (size_t)width;
   (void)thread;
-  for (int x = 0; x < width; x++) {
-    float sum = 0.f;
-    int first = x > AROUND ? x - AROUND : 0, last = x + AROUND < width ? x + AROUND : width - 1;
-    for (int k = first; k <= last; k++) sum += from[k];
-    to[x] = sum / (2 * AROUND + 1);
+  for (int x = 0; x < width; x++) to[x] = 0.f;
+  for (int k = -AROUND; k <= AROUND; k++) {
+    int first = k < 0 ? -k : 0, end = k > 0 ? width - k : width;
+    for (int x = first; x < end; x++) to[x] += from[x + k];
   }
+  for (int x = 0; x < width; x++) to[x] /= 2 * AROUND + 1;
 }
 
 static void average_along(void *user, int y, int thread) {
