@@ -1,15 +1,16 @@
 #include "base/memory.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 struct rc_block {
   rc_block *older, *newer;
   size_t bytes;
+  void *from; /* what the C library gave */
 };
 
 /* The block's head takes one alignment unit, so that the memory behind it stays aligned. */
-#define HEAD ((size_t)64)
+#define ALIGNMENT ((size_t)64)
+#define HEAD ALIGNMENT
 
 static recede_status no_memory(rc_context *context, size_t bytes) {
   return rc_fail(context, RECEDE_NO_MEMORY,
@@ -18,12 +19,30 @@ static recede_status no_memory(rc_context *context, size_t bytes) {
                  (bytes >> 20) + 1);
 }
 
-recede_status rc_allocate(rc_context *context, size_t count, size_t size, void **memory) {
+/* Large zeroed memory comes from the system, whose pages are zero when they are first touched: by
+ * the thread that needs them, or never. */
+static rc_block *block_of_zeros(size_t bytes) {
+  char *from = calloc(1, bytes + ALIGNMENT - 1);
+  if (!from) return NULL;
+  rc_block *block =
+      (rc_block *)(void *)(from + (ALIGNMENT - (uintptr_t)from % ALIGNMENT) % ALIGNMENT);
+  block->from = from;
+  return block;
+}
+
+static rc_block *block_of(size_t bytes) {
+  rc_block *block = aligned_alloc(ALIGNMENT, bytes);
+  if (block) block->from = block;
+  return block;
+}
+
+static recede_status allocate(rc_context *context, size_t count, size_t size, bool zero,
+                              void **memory) {
   size_t bytes;
   *memory = NULL;
   if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX / 2)
     return rc_fail(context, RECEDE_TOO_LARGE, "The picture is too large for this machine.");
-  bytes = (bytes + HEAD + 63) / 64 * 64;
+  bytes = (bytes + HEAD + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
   if (context->used_bytes + bytes > context->limit_bytes)
     return rc_fail(context, RECEDE_TOO_LARGE,
                    "The memory limit of %llu MiB does not suffice (%llu MiB are needed at least). "
@@ -32,7 +51,7 @@ recede_status rc_allocate(rc_context *context, size_t count, size_t size, void *
                    (unsigned long long)((context->used_bytes + bytes) >> 20) + 1);
   context->allocations++;
   if (context->allocations == context->host.fail_allocation) return no_memory(context, bytes);
-  rc_block *block = aligned_alloc(64, bytes);
+  rc_block *block = zero ? block_of_zeros(bytes) : block_of(bytes);
   if (!block) return no_memory(context, bytes);
   block->bytes = bytes;
   block->newer = NULL;
@@ -45,10 +64,12 @@ recede_status rc_allocate(rc_context *context, size_t count, size_t size, void *
   return RECEDE_OK;
 }
 
+recede_status rc_allocate(rc_context *context, size_t count, size_t size, void **memory) {
+  return allocate(context, count, size, false, memory);
+}
+
 recede_status rc_allocate_zero(rc_context *context, size_t count, size_t size, void **memory) {
-  RC_TRY(rc_allocate(context, count, size, memory));
-  memset(*memory, 0, count * size);
-  return RECEDE_OK;
+  return allocate(context, count, size, true, memory);
 }
 
 static void free_block(rc_context *context, rc_block *block) {
@@ -56,7 +77,7 @@ static void free_block(rc_context *context, rc_block *block) {
   if (block->newer) block->newer->older = block->older;
   if (context->blocks == block) context->blocks = block->older;
   context->used_bytes -= block->bytes;
-  free(block);
+  free(block->from);
 }
 
 void rc_free(rc_context *context, void **memory) {
