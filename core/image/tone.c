@@ -17,6 +17,8 @@
 /* Enough for six decimals of a trend. */
 #define MOST_SAMPLES 400000
 #define TERMS RC_TONE_TERMS
+/* The trend is added to so many pixels of a row at once. */
+#define COLUMNS 64
 
 static int within(int v, int low, int end) { return v < low ? low : v >= end ? end - 1 : v; }
 
@@ -188,17 +190,40 @@ typedef struct application {
   rc_image *image;
 } application;
 
+static bool has_any(const uint8_t *flags, int count, uint8_t flag) {
+  uint8_t any = 0;
+  for (int i = 0; i < count; i++) any |= flags[i];
+  return any & flag;
+}
+
+/* The trend of one channel at some pixels, whose terms are these. */
+static void trend_of(const double own[TERMS], double terms[TERMS][COLUMNS], double *value) {
+  for (int i = 0; i < COLUMNS; i++) value[i] = 0;
+  for (int t = 0; t < TERMS; t++)
+    for (int i = 0; i < COLUMNS; i++) value[i] += own[t] * terms[t][i];
+}
+
 static void apply_row(void *user, int y, int thread) {
   const application *a = user;
   const rc_tone *tone = a->tone;
-  double terms[TERMS];
+  double terms[TERMS][COLUMNS], value[COLUMNS];
   (void)thread;
-  for (int x = 0; x < a->image->width; x++) {
-    if (!(*rc_flag(a->flags, x, y) & a->flag)) continue;
-    basis(tone, within(x, tone->box.x0, tone->box.x1), within(y, tone->box.y0, tone->box.y1),
-          terms);
-    for (int k = 0; k < tone->channels; k++)
-      rc_pixel(a->image, x, y)[k] += a->sign * (float)value_of(tone, k, terms);
+  for (int first = 0; first < a->image->width; first += COLUMNS) {
+    int count = a->image->width - first < COLUMNS ? a->image->width - first : COLUMNS;
+    const uint8_t *flags = rc_flag(a->flags, first, y);
+    float *pixels = rc_pixel(a->image, first, y);
+    if (!has_any(flags, count, a->flag)) continue;
+    for (int i = 0; i < COLUMNS; i++) {
+      double at[TERMS];
+      basis(tone, within(first + i, tone->box.x0, tone->box.x1),
+            within(y, tone->box.y0, tone->box.y1), at);
+      for (int t = 0; t < TERMS; t++) terms[t][i] = at[t];
+    }
+    for (int k = 0; k < tone->channels; k++) {
+      trend_of(tone->terms[k], terms, value);
+      for (int i = 0; i < count; i++)
+        if (flags[i] & a->flag) pixels[i * tone->channels + k] += a->sign * (float)value[i];
+    }
   }
 }
 

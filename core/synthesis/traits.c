@@ -22,7 +22,7 @@
 #define LEAST_VARIANCE 1e-18
 #define LEAST_RELATIVE 1e-12
 #define MOST_INPUTS (3 + DETAILS)
-/* More say no more of what varies most. */
+/* At the most: more say no more of what varies most. */
 #define SAMPLES 50000
 /* Half pixels made at once, each way, and the detail that takes. */
 #define BLOCK_PX 32
@@ -121,7 +121,7 @@ typedef struct projection {
   const rc_image *image, *detail;
   const rc_mask *flags;
   rc_box box;
-  int inputs, samples;
+  int inputs;
   double mean[MOST_INPUTS], covariance[MOST_INPUTS * MOST_INPUTS];
   /* A component's byte is the sum of the inputs, each times its weight, and the offset. */
   float weights[RC_COMPONENTS][MOST_INPUTS], offset[RC_COMPONENTS];
@@ -140,45 +140,52 @@ static void inputs_at(const projection *p, int x, int y, float *inputs) {
   for (int k = 0; k < DETAILS; k++) inputs[colours + k] = WEIGHT_OF_DETAIL * detail[k];
 }
 
-typedef void on_sample(projection *p, const float *inputs);
-
-static void add_to_mean(projection *p, const float *inputs) {
-  for (int i = 0; i < p->inputs; i++) p->mean[i] += (double)inputs[i] / p->samples;
-}
-
-static void add_to_covariance(projection *p, const float *inputs) {
-  double off[MOST_INPUTS];
-  for (int i = 0; i < p->inputs; i++) off[i] = (double)inputs[i] - p->mean[i];
-  for (int i = 0; i < p->inputs; i++)
-    for (int j = 0; j < p->inputs; j++)
-      p->covariance[i * p->inputs + j] += off[i] * off[j] / p->samples;
-}
-
 /* One of every so many sources, at random: regular steps would fall in with a texture's own. */
-static void for_samples(projection *p, on_sample *then) {
-  int sources = 0;
-  float inputs[MOST_INPUTS];
-  p->samples = 0;
-  for (int y = p->box.y0; y < p->box.y1; y++)
-    for (int x = p->box.x0; x < p->box.x1; x++)
-      sources += *rc_flag(p->flags, x, y) & RC_SOURCE ? 1 : 0;
-  int step = sources / SAMPLES + 1, n = 0;
-  p->samples = (sources + step - 1) / step;
-  for (int y = p->box.y0; y < p->box.y1; y++)
+static int take_samples(const projection *p, int32_t *samples) {
+  int sources = 0, taken = 0, run = 0, chosen = 0;
+  for (int y = p->box.y0; y < p->box.y1; y++) {
+    const uint8_t *flags = rc_flag(p->flags, 0, y);
+    for (int x = p->box.x0; x < p->box.x1; x++) sources += flags[x] & RC_SOURCE ? 1 : 0;
+  }
+  int step = sources / SAMPLES + 1, n = step; /* of its run; the first begins with the first */
+  for (int y = p->box.y0; y < p->box.y1; y++) {
+    const uint8_t *flags = rc_flag(p->flags, 0, y);
     for (int x = p->box.x0; x < p->box.x1; x++) {
-      if (!(*rc_flag(p->flags, x, y) & RC_SOURCE)) continue;
-      int run = n / step, last = (run + 1) * step <= sources ? step : sources - run * step;
-      if (n++ % step != (int)rc_below((uint32_t)rc_mix((uint64_t)run), (uint32_t)last)) continue;
-      inputs_at(p, x, y, inputs);
-      then(p, inputs);
+      if (!(flags[x] & RC_SOURCE)) continue;
+      if (n == step) {
+        int left = sources - run * step, last = left < step ? left : step;
+        chosen = (int)rc_below((uint32_t)rc_mix((uint64_t)run), (uint32_t)last);
+        run++, n = 0;
+      }
+      if (n++ == chosen) samples[taken++] = y * p->flags->width + x;
     }
+  }
+  return taken;
+}
+
+static void set_covariance(projection *p, const int32_t *samples, int count) {
+  int n = p->inputs, width = p->flags->width;
+  float inputs[MOST_INPUTS];
+  double off[MOST_INPUTS];
+  for (int s = 0; s < count; s++) {
+    inputs_at(p, samples[s] % width, samples[s] / width, inputs);
+    for (int i = 0; i < n; i++) p->mean[i] += (double)inputs[i] / count;
+  }
+  for (int s = 0; s < count; s++) {
+    inputs_at(p, samples[s] % width, samples[s] / width, inputs);
+    for (int i = 0; i < n; i++) off[i] = (double)inputs[i] - p->mean[i];
+    for (int i = 0; i < n; i++)
+      for (int j = 0; j < n; j++) p->covariance[i * n + j] += off[i] * off[j] / count;
+  }
 }
 
 static recede_status find_components(rc_context *context, projection *p) {
   int n = p->inputs;
   double values[MOST_INPUTS], axes[MOST_INPUTS * MOST_INPUTS]; /* the k-th in column k */
-  for_samples(p, add_to_mean);
-  for_samples(p, add_to_covariance);
+  int32_t *samples;
+  RC_TRY(RC_NEW(context, SAMPLES, &samples));
+  set_covariance(p, samples, take_samples(p, samples));
+  RC_FREE(context, &samples);
   RC_TRY(rc_eigen(context, p->covariance, n, n, values, axes));
   double square = 0;
   for (int i = 0; i < n; i++) square += p->mean[i] * p->mean[i];
