@@ -105,7 +105,7 @@ typedef struct strip {
   size_t fine_row; /* floats */
   int first;
   double *square; /* of each pixel of the strip */
-  uint8_t *group; /* its class, + HOLE in the hole; or NONE */
+  uint8_t *group; /* of each pixel of the box: its class, + HOLE in the hole; or NONE */
 } strip;
 
 static uint8_t group_at(const rc_level *level, int x, int y) {
@@ -117,6 +117,14 @@ static uint8_t group_at(const rc_level *level, int x, int y) {
   return c < 0 ? NONE : (uint8_t)(hole ? HOLE + c : c);
 }
 
+static void group_row(void *user, int y, int thread) {
+  const strip *s = user;
+  const bands *b = s->bands;
+  uint8_t *group = s->group + (size_t)y * (size_t)b->width;
+  (void)thread;
+  for (int x = 0; x < b->width; x++) group[x] = group_at(s->level, b->box.x0 + x, b->box.y0 + y);
+}
+
 static void measure_row(void *user, int item, int thread) {
   const strip *s = user;
   const bands *b = s->bands;
@@ -125,14 +133,12 @@ static void measure_row(void *user, int item, int thread) {
   const float *coarse = s->coarse + (size_t)y * (size_t)b->width * (size_t)b->channels;
   (void)thread;
   for (int x = 0; x < b->width; x++) {
-    size_t at = (size_t)item * (size_t)b->width + (size_t)x;
     double sum = 0;
     for (int k = 0; k < b->channels; k++) {
       double d = (double)*fine++ - (double)*coarse++;
       sum += d * d;
     }
-    s->square[at] = sum;
-    s->group[at] = group_at(s->level, b->box.x0 + x, b->box.y0 + y);
+    s->square[(size_t)item * (size_t)b->width + (size_t)x] = sum;
   }
 }
 
@@ -142,10 +148,11 @@ static recede_status measure(rc_context *context, strip *s, energies *e) {
   for (s->first = 0; s->first < b->height; s->first += STRIP_ROWS) {
     int rows = b->height - s->first < STRIP_ROWS ? b->height - s->first : STRIP_ROWS;
     RC_TRY(rc_parallel(context, rows, measure_row, s));
+    const uint8_t *group = s->group + (size_t)s->first * (size_t)b->width;
     for (size_t i = 0; i < (size_t)rows * (size_t)b->width; i++) {
-      int c = s->group[i] & (HOLE - 1);
-      if (s->group[i] == NONE) continue;
-      if (s->group[i] & HOLE)
+      int c = group[i] & (HOLE - 1);
+      if (group[i] == NONE) continue;
+      if (group[i] & HOLE)
         e->hole[c] += s->square[i], e->hole_count[c]++;
       else
         e->known[c] += s->square[i], e->known_count[c]++;
@@ -228,7 +235,8 @@ recede_status rc_match_detail(rc_context *context, const rc_level *level, rc_ima
   RC_TRY(RC_NEW(context, (size_t)level->width * (size_t)level->height, &depth));
   RC_TRY(RC_NEW(context, values, &scratch));
   RC_TRY(RC_NEW(context, strip_rows * (size_t)b.width, &s.square));
-  RC_TRY(RC_NEW(context, strip_rows * (size_t)b.width, &s.group));
+  RC_TRY(RC_NEW(context, (size_t)b.height * (size_t)b.width, &s.group));
+  RC_TRY(rc_parallel(context, b.height, group_row, &s));
   s.fine = rc_pixel(residual, b.box.x0, b.box.y0);
   s.fine_row = (size_t)residual->width * (size_t)b.channels;
   for (int n = 0; n < BANDS; n++) {

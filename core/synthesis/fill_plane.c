@@ -251,7 +251,7 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int ch
   uint64_t search = box * (12 + 4 + 4) * 2 + pixels * (4 + 1);
   uint64_t pads = rows * (40 * c + 20) + 16 * c * (columns + 5);
   uint64_t composition = box * (12 * c + 4) + pads;
-  uint64_t detail = (grown < pixels ? grown : pixels) * 12 * c + pixels;
+  uint64_t detail = (grown < pixels ? grown : pixels) * (12 * c + 1) + pixels;
   uint64_t last = search > composition ? search : composition;
   return pyramid + levels + (last > detail ? last : detail) + ((uint64_t)4 << 20);
 }
