@@ -5,11 +5,13 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/real.h"
 #include "synthesis/follow.h"
 
 /* Profiles are averaged along a run outside the hole. */
-#define RUN 16      /* samples */
-#define STEP_PX 2.f /* between them */
+#define RUN 16                 /* samples */
+#define MOST_MISSING (RUN / 4) /* of them, where there is no source */
+#define STEP_PX 2.f            /* between them */
 #define DIRECTIONS 128
 /* Lines are looked for at the finest level whose hole has at most so many border pixels. */
 #define MOST_BORDER 800
@@ -55,24 +57,26 @@ static const float middle[RC_PROFILE] = {0, .2f, .6f, 1, 1, .6f, .2f};
 static profile measure(const finder *f, float x, float y, float ux, float uy, float outwards) {
   profile p = {.strength = 0};
   const rc_mask *flags = f->picture.flags;
-  int counts[RC_PROFILE] = {0};
+  int missing[RC_PROFILE] = {0};
   float square[RC_PROFILE] = {0}, noise = 0, centre = 0, signal = 0;
   for (int k = 0; k < RUN; k++)
     for (int o = 0; o < RC_PROFILE; o++) {
       float along = outwards * (RC_PROFILE_FROM_PX + STEP_PX * (float)k);
       float across = (float)(o - RC_PROFILE_HALF);
-      int px = (int)floorf(x + ux * along - uy * across + .5f);
-      int py = (int)floorf(y + uy * along + ux * across + .5f);
-      if (!rc_inside(flags->width, flags->height, px, py)) continue;
+      int px = rc_floor(x + ux * along - uy * across + .5f);
+      int py = rc_floor(y + uy * along + ux * across + .5f);
       size_t at = (size_t)py * (size_t)flags->width + (size_t)px;
-      if (!(flags->data[at] & RC_SOURCE)) continue;
+      if (!rc_inside(flags->width, flags->height, px, py) || !(flags->data[at] & RC_SOURCE)) {
+        if (++missing[o] > MOST_MISSING) return p;
+        continue;
+      }
       float value = f->picture.value[at];
-      p.mean[o] += value, square[o] += value * value, counts[o]++;
+      p.mean[o] += value, square[o] += value * value;
     }
   for (int o = 0; o < RC_PROFILE; o++) {
-    if (counts[o] < RUN * 3 / 4) return p;
-    p.mean[o] /= (float)counts[o];
-    noise += square[o] / (float)counts[o] - p.mean[o] * p.mean[o];
+    float count = (float)(RUN - missing[o]);
+    p.mean[o] /= count;
+    noise += square[o] / count - p.mean[o] * p.mean[o];
     centre += p.mean[o] / RC_PROFILE;
   }
   for (int o = 0; o < RC_PROFILE; o++) {
