@@ -1,6 +1,7 @@
 #include "synthesis/traits.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/eigen.h"
 #include "base/memory.h"
@@ -40,26 +41,36 @@ typedef struct pooling {
   float *scratch; /* SCRATCH for each thread */
 } pooling;
 
-/* To the next pixel, or where that is not known from the one before; else 0. */
-static float difference(const pooling *p, int x, int y, int dx, int dy) {
-  const rc_image *image = p->image;
-  for (int sign = 1; sign >= -1; sign -= 2) {
-    int nx = x + sign * dx, ny = y + sign * dy;
-    if (rc_inside(image->width, image->height, nx, ny) && *rc_flag(p->flags, nx, ny) & RC_KNOWN)
-      return (float)sign * (rc_brightness_at(image, nx, ny) - rc_brightness_at(image, x, y));
-  }
-  return 0;
+/* Of the columns from first to one beyond end, where there are any. */
+static void brightness_row(const pooling *p, int y, int first, int end, float *bright) {
+  if (y == p->image->height) return;
+  for (int x = first; x <= end && x < p->image->width; x++)
+    bright[x - first] = rc_brightness_at(p->image, x, y);
 }
 
-/* Of the columns from first to before end. */
-static void detail_row(const pooling *p, int y, int first, int end, float *row) {
+/* To here from the pixel before, 0 where that is not known. */
+static float difference_before(const pooling *p, int x, int y, int dx, int dy, float here) {
+  if (x < dx || y < dy || !(*rc_flag(p->flags, x - dx, y - dy) & RC_KNOWN)) return 0;
+  return here - rc_brightness_at(p->image, x - dx, y - dy);
+}
+
+/* Of the columns from first to before end, from the brightness of the row and of the next. Differs
+ * to the next pixel, or where that is not known from the one before. */
+static void detail_row(const pooling *p, int y, int first, int end, const float *bright,
+                       const float *below, float *row) {
   const rc_chart *chart = &p->chart;
-  const uint8_t *flags = rc_flag(p->flags, 0, y);
+  const uint8_t *flags = rc_flag(p->flags, 0, y), *next = flags + p->flags->width;
+  int width = p->image->width;
+  bool last = y + 1 == p->image->height;
   float at_y = (float)y - chart->y0;
-  for (int x = first; x < end; x++) {
+  for (int x = first; x < end; x++, bright++, below++) {
     float *detail = row + DETAILS * (x - first), at_x = (float)x - chart->x0;
     if (!(flags[x] & RC_KNOWN)) continue; /* nobody looks */
-    float gx = difference(p, x, y, 1, 0), gy = difference(p, x, y, 0, 1);
+    float gx = x + 1 < width && flags[x + 1] & RC_KNOWN
+                   ? bright[1] - bright[0]
+                   : difference_before(p, x, y, 1, 0, bright[0]);
+    float gy = !last && next[x] & RC_KNOWN ? below[0] - bright[0]
+                                           : difference_before(p, x, y, 0, 1, bright[0]);
     float outward = at_x * gx + at_y * gy;
     float along_x = gx + chart->lx * outward, along_y = gy + chart->ly * outward;
     detail[0] = fabsf(along_x), detail[1] = fabsf(along_y);
@@ -80,8 +91,13 @@ static void pool_block(void *user, int item, int thread) {
   rc_box from = {rc_half_from(x0, 0, width), rc_half_from(y0, 0, height),
                  rc_half_from(x1 - 1, 3, width) + 1, rc_half_from(y1 - 1, 3, height) + 1};
   float *scratch = p->scratch + (size_t)thread * SCRATCH;
-  for (int y = from.y0; y < from.y1; y++)
-    detail_row(p, y, from.x0, from.x1, scratch + (y - from.y0) * SCRATCH_ROW);
+  float bright[2][2 * BLOCK_PX + 3];
+  brightness_row(p, from.y0, from.x0, from.x1, bright[from.y0 & 1]);
+  for (int y = from.y0; y < from.y1; y++) {
+    brightness_row(p, y + 1, from.x0, from.x1, bright[(y + 1) & 1]);
+    detail_row(p, y, from.x0, from.x1, bright[y & 1], bright[(y + 1) & 1],
+               scratch + (y - from.y0) * SCRATCH_ROW);
+  }
   for (int y = y0; y < y1; y++) {
     const float *rows[4];
     const uint8_t *flags[4];
@@ -124,7 +140,7 @@ typedef struct projection {
   int inputs;
   double mean[MOST_INPUTS], covariance[MOST_INPUTS * MOST_INPUTS];
   /* A component's byte is the sum of the inputs, each times its weight, and the offset. */
-  float weights[RC_COMPONENTS][MOST_INPUTS], offset[RC_COMPONENTS];
+  float weights[MOST_INPUTS][RC_COMPONENTS], offset[RC_COMPONENTS];
   rc_traits *traits;
 } projection;
 
@@ -194,7 +210,7 @@ static recede_status find_components(rc_context *context, projection *p) {
   for (int k = 0; k < RC_COMPONENTS; k++) {
     double offset = 128.5;
     for (int i = 0; i < n; i++) {
-      p->weights[k][i] = (float)(gain * axes[i * n + k]);
+      p->weights[i][k] = (float)(gain * axes[i * n + k]);
       offset -= gain * axes[i * n + k] * p->mean[i];
     }
     p->offset[k] = (float)offset;
@@ -213,12 +229,13 @@ static void project_row(void *user, int row, int thread) {
   float inputs[MOST_INPUTS];
   (void)thread;
   for (int x = p->box.x0; x < p->box.x1; x++) {
+    float bytes[RC_COMPONENTS];
     inputs_at(p, x, y, inputs);
-    for (int k = 0; k < RC_COMPONENTS; k++) {
-      float byte = p->offset[k];
-      for (int i = 0; i < p->inputs; i++) byte += p->weights[k][i] * inputs[i];
-      pixels[x] |= (uint32_t)fminf(fmaxf(byte, 0.f), 255.f) << 8 * k;
-    }
+    memcpy(bytes, p->offset, sizeof bytes);
+    for (int i = 0; i < p->inputs; i++)
+      for (int k = 0; k < RC_COMPONENTS; k++) bytes[k] += p->weights[i][k] * inputs[i];
+    for (int k = 0; k < RC_COMPONENTS; k++)
+      pixels[x] |= (uint32_t)(bytes[k] > 0.f ? bytes[k] < 255.f ? bytes[k] : 255.f : 0.f) << 8 * k;
   }
 }
 
