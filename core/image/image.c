@@ -15,13 +15,15 @@ recede_status rc_mask_new(rc_context *context, int width, int height, rc_mask *m
 
 rc_box rc_box_of(const rc_mask *mask, int wanted) {
   rc_box box = {mask->width, mask->height, 0, 0};
-  for (int y = 0; y < mask->height; y++)
-    for (int x = 0; x < mask->width; x++) {
-      if (!(*rc_flag(mask, x, y) & wanted)) continue;
-      if (x < box.x0) box.x0 = x;
-      if (x >= box.x1) box.x1 = x + 1;
-      if (y < box.y0) box.y0 = y;
-      box.y1 = y + 1;
-    }
+  for (int y = 0; y < mask->height; y++) {
+    const uint8_t *row = rc_flag(mask, 0, y);
+    int first = 0, end = mask->width, any = 0;
+    for (int x = 0; x < end; x++) any |= row[x];
+    if (!(any & wanted)) continue;
+    while (!(row[first] & wanted)) first++;
+    while (!(row[end - 1] & wanted)) end--;
+    box.x0 = first < box.x0 ? first : box.x0, box.x1 = end > box.x1 ? end : box.x1;
+    box.y0 = y < box.y0 ? y : box.y0, box.y1 = y + 1;
+  }
   return box.x1 ? box : (rc_box){0, 0, 0, 0};
 }

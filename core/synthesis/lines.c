@@ -299,9 +299,10 @@ static void follow(const rc_seen *seen, const rc_chart *chart, int exponent,
 
 /* Target pixels that touch known ones; border may be NULL. */
 static int collect_border(const rc_mask *flags, int32_t *border) {
+  rc_box box = rc_box_of(flags, RC_TARGET);
   int count = 0;
-  for (int y = 1; y + 1 < flags->height; y++)
-    for (int x = 1; x + 1 < flags->width; x++) {
+  for (int y = box.y0 > 1 ? box.y0 : 1; y < box.y1 && y + 1 < flags->height; y++)
+    for (int x = box.x0 > 1 ? box.x0 : 1; x < box.x1 && x + 1 < flags->width; x++) {
       if (!(*rc_flag(flags, x, y) & RC_TARGET)) continue;
       int beside = *rc_flag(flags, x - 1, y) | *rc_flag(flags, x + 1, y) |
                    *rc_flag(flags, x, y - 1) | *rc_flag(flags, x, y + 1);

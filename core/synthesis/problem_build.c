@@ -109,8 +109,9 @@ static recede_status read_pixels(rc_context *context, const rc_views *views, rc_
 /* w where the target comes nearest, and its centroid on the plane. */
 static double nearest_w(const rc_problem *problem, double *x, double *y) {
   double nearest = 0, sum_x = 0, sum_y = 0, count = 0;
-  for (int py = 0; py < problem->flags.height; py++)
-    for (int px = 0; px < problem->flags.width; px++) {
+  rc_box box = rc_box_of(&problem->flags, RC_TARGET);
+  for (int py = box.y0; py < box.y1; py++)
+    for (int px = box.x0; px < box.x1; px++) {
       if (!(*rc_flag(&problem->flags, px, py) & RC_TARGET)) continue;
       double w = recede_plane_w(&problem->plane, problem->origin_x + px, problem->origin_y + py);
       if (w <= 0) continue;
@@ -153,8 +154,9 @@ static bool is_inner(const rc_mask *flags, int x, int y) {
 }
 
 static void distrust_ring(rc_mask *flags) {
-  for (int y = 0; y < flags->height; y++)
-    for (int x = 0; x < flags->width; x++) {
+  rc_box box = rc_box_of(flags, RC_TARGET);
+  for (int y = box.y0; y < box.y1; y++)
+    for (int x = box.x0; x < box.x1; x++) {
       if (!(*rc_flag(flags, x, y) & RC_TARGET) || is_inner(flags, x, y)) continue;
       for (int dy = -UNTRUSTED_RING_PX; dy <= UNTRUSTED_RING_PX; dy++)
         for (int dx = -UNTRUSTED_RING_PX; dx <= UNTRUSTED_RING_PX; dx++)
