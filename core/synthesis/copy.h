@@ -40,7 +40,7 @@ typedef struct rc_place {
 } rc_place;
 
 static inline bool rc_same_copy(rc_copy p, rc_copy q) {
-  return p.a == q.a && p.b == q.b && p.r == q.r;
+  return (p.a == q.a) & (p.b == q.b) & (p.r == q.r);
 }
 
 static inline rc_place rc_copy_place(const rc_chart *chart, rc_copy copy, float x, float y) {
