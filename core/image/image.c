@@ -27,3 +27,9 @@ rc_box rc_box_of(const rc_mask *mask, int wanted) {
   }
   return box.x1 ? box : (rc_box){0, 0, 0, 0};
 }
+
+rc_box rc_box_grown(rc_box box, int px, int width, int height) {
+  return (rc_box){box.x0 > px ? box.x0 - px : 0, box.y0 > px ? box.y0 - px : 0,
+                  box.x1 + px < width ? box.x1 + px : width,
+                  box.y1 + px < height ? box.y1 + px : height};
+}

@@ -28,6 +28,8 @@ recede_status rc_image_new(rc_context *context, int width, int height, int chann
 recede_status rc_mask_new(rc_context *context, int width, int height, rc_mask *mask);
 /* Around the pixels with any of these flags; all 0 where there is none. */
 rc_box rc_box_of(const rc_mask *mask, int wanted);
+/* So many px larger to each side, inside width x height. */
+rc_box rc_box_grown(rc_box box, int px, int width, int height);
 static inline float *rc_pixel(const rc_image *image, int x, int y) {
   return image->data + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;
 }

@@ -212,17 +212,9 @@ static void apply_row(void *user, int y, int thread) {
   }
 }
 
-static rc_box grown(const rc_level *level) {
-  rc_box box = level->box;
-  box.x0 = box.x0 < SURROUNDINGS_PX ? 0 : box.x0 - SURROUNDINGS_PX;
-  box.y0 = box.y0 < SURROUNDINGS_PX ? 0 : box.y0 - SURROUNDINGS_PX;
-  box.x1 = box.x1 + SURROUNDINGS_PX > level->width ? level->width : box.x1 + SURROUNDINGS_PX;
-  box.y1 = box.y1 + SURROUNDINGS_PX > level->height ? level->height : box.y1 + SURROUNDINGS_PX;
-  return box;
-}
-
 recede_status rc_match_detail(rc_context *context, const rc_level *level, rc_image *residual) {
-  bands b = {.box = grown(level), .channels = residual->channels};
+  bands b = {.box = rc_box_grown(level->box, SURROUNDINGS_PX, level->width, level->height),
+             .channels = residual->channels};
   application a = {.bands = &b, .level = level, .residual = residual};
   strip s = {.bands = &b, .level = level};
   float *scratch;

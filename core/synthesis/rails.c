@@ -28,6 +28,9 @@
 #define TRIES (8 * POINTS)
 #define LEAST_SEEN 50
 #define WIDEST_RATIO 2.f
+/* So near to the hole, in its longer sides: what runs across a pier is no texture of the rails and
+ * the water beside it. What points are compared with may lie anywhere. */
+#define NEAR_HOLE .5f
 
 typedef struct view {
   const rc_image *image;
@@ -47,11 +50,14 @@ static bool source_at(const void *user, int x, int y, float *value) {
 /* beside: only points where its distance is positive; NULL: all. */
 static void set_view(const rc_image *image, const rc_mask *flags, rc_chart chart,
                      const rc_boundary *beside, view *v) {
+  rc_box hole = rc_box_of(flags, RC_TARGET);
+  int longer = hole.x1 - hole.x0 > hole.y1 - hole.y0 ? hole.x1 - hole.x0 : hole.y1 - hole.y0;
+  rc_box near = rc_box_grown(hole, (int)(NEAR_HOLE * (float)longer), image->width, image->height);
   *v = (view){.image = image, .flags = flags, .chart = rc_chart_flat(chart)};
   for (uint32_t n = 0; n < TRIES && v->count < POINTS; n++) {
     uint64_t bits = rc_random(rc_key(0, 97, 0), n, 0, 0);
-    int x = (int)rc_below((uint32_t)bits, (uint32_t)image->width);
-    int y = (int)rc_below((uint32_t)(bits >> 32), (uint32_t)image->height);
+    int x = near.x0 + (int)rc_below((uint32_t)bits, (uint32_t)(near.x1 - near.x0));
+    int y = near.y0 + (int)rc_below((uint32_t)(bits >> 32), (uint32_t)(near.y1 - near.y0));
     float px = (float)x - chart.x0, py = (float)y - chart.y0,
           w = 1.f + chart.lx * px + chart.ly * py;
     if (beside && !(beside->nx * px + beside->ny * py + beside->at > 0)) continue;
