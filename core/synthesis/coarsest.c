@@ -18,7 +18,7 @@
 #define FAVOUR_OF_LINES 1.3
 #define FAVOUR_OF_CLEAR_LINES 2.
 /* What comes from another board is not what this one shows again and again beside the hole. */
-#define FAVOUR_OF_BOARDS 1.1
+#define FAVOUR_OF_BOARDS 1.25
 /* Moves along the rails are from so many px to so many, no more than whole.c looks at; and so many
  * target pixels may find nothing along them: they go on from what lies beside them. */
 #define LEAST_MOVE_PX 6
@@ -137,6 +137,7 @@ static recede_status start_on_rails(rc_context *context, const rc_descent *e, in
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
   RC_TRY(try_starts(context, e, &s, p, level, scratch, best, own));
   *own += price_of_broken_lines(e, level, best);
+  if (!nearly_all_have_copies(level)) *own = INFINITY;
   return RECEDE_OK;
 }
 
@@ -156,12 +157,12 @@ static recede_status try_rails(rc_context *context, rc_descent *e, int first, in
     RC_TRY(start_on_rails(context, e, first, count, p, level, scratch, &across, &own_across));
   e->rails.rows = 0, level->board = NULL;
   RC_TRY(start_on_rails(context, e, first, count, p, level, scratch, &along, &own));
-  if (own_across < FAVOUR_OF_BOARDS * own) {
+  if (rows && own_across < FAVOUR_OF_BOARDS * own) {
     own = own_across;
     e->rails.rows = rows, level->board = board;
     rc_trial_restore(level, &across);
   }
-  e->on_rails = own < FAVOUR_OF_LINES * misfit && nearly_all_have_copies(level);
+  e->on_rails = own < FAVOUR_OF_LINES * misfit;
   if (!e->on_rails) level->board = NULL;
   return RECEDE_OK;
 }

@@ -142,8 +142,9 @@ static recede_status find_lines(rc_context *context, rc_descent *e) {
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
                             &e->line_count, &e->rails, &e->boundary));
   if (!e->params->engine_rails) e->rails = (rc_rails){0};
-  if (rc_runs(&e->rails) && e->params->engine_gauge)
+  if (rc_runs(&e->rails) && e->params->surface != RECEDE_SURFACE_RAISED && e->params->engine_gauge)
     RC_TRY(rc_gauge_find(context, e->images, e->flags, e->level_count, &e->chart, &e->rails));
+  if (e->rails.rows) e->chart.raised = false; /* boards of one width lie */
   return RECEDE_OK;
 }
 
@@ -230,7 +231,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(find_lines(context, &e));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
-  context->report.surface = raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;
+  context->report.surface = e.chart.raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;
   RC_TRY(rc_descend(context, &e, &finest));
   RC_TRY(rc_stage(context, "composition", .8, .93));
   RC_TRY(compose(context, &e, &finest, filled));

@@ -23,7 +23,7 @@
 #define LEAST_GAUGE_PX 6
 #define MOST_GAUGE_PX 96
 #define LEAST_LIKENESS .5
-#define MOST_ROWS 4
+#define MOST_ROWS 6
 /* Each multiple is looked for so near to where the one before it puts it. */
 #define DRIFT_PX 1
 

@@ -28,8 +28,8 @@
 #define TRIES (8 * POINTS)
 #define LEAST_SEEN 50
 #define WIDEST_RATIO 2.f
-/* So near to the hole, in its longer sides: what runs across a pier is no texture of the rails and
- * the water beside it. What points are compared with may lie anywhere. */
+/* Whether lines repeat is asked so near to the hole, in its longer sides: from one rail of a pier
+ * to the other its texture seems to. What points are compared with may lie anywhere. */
 #define NEAR_HOLE .5f
 
 typedef struct view {
@@ -47,17 +47,22 @@ static bool source_at(const void *user, int x, int y, float *value) {
   return (*rc_flag(v->flags, x, y) & RC_SOURCE) != 0;
 }
 
-/* beside: only points where its distance is positive; NULL: all. */
-static void set_view(const rc_image *image, const rc_mask *flags, rc_chart chart,
-                     const rc_boundary *beside, view *v) {
+static rc_box all_of(const rc_mask *flags) { return (rc_box){0, 0, flags->width, flags->height}; }
+
+static rc_box near_hole(const rc_mask *flags) {
   rc_box hole = rc_box_of(flags, RC_TARGET);
   int longer = hole.x1 - hole.x0 > hole.y1 - hole.y0 ? hole.x1 - hole.x0 : hole.y1 - hole.y0;
-  rc_box near = rc_box_grown(hole, (int)(NEAR_HOLE * (float)longer), image->width, image->height);
+  return rc_box_grown(hole, (int)(NEAR_HOLE * (float)longer), flags->width, flags->height);
+}
+
+/* Points within the box. beside: only where its distance is positive; NULL: all. */
+static void set_view(const rc_image *image, const rc_mask *flags, rc_chart chart, rc_box box,
+                     const rc_boundary *beside, view *v) {
   *v = (view){.image = image, .flags = flags, .chart = rc_chart_flat(chart)};
   for (uint32_t n = 0; n < TRIES && v->count < POINTS; n++) {
     uint64_t bits = rc_random(rc_key(0, 97, 0), n, 0, 0);
-    int x = near.x0 + (int)rc_below((uint32_t)bits, (uint32_t)(near.x1 - near.x0));
-    int y = near.y0 + (int)rc_below((uint32_t)(bits >> 32), (uint32_t)(near.y1 - near.y0));
+    int x = box.x0 + (int)rc_below((uint32_t)bits, (uint32_t)(box.x1 - box.x0));
+    int y = box.y0 + (int)rc_below((uint32_t)(bits >> 32), (uint32_t)(box.y1 - box.y0));
     float px = (float)x - chart.x0, py = (float)y - chart.y0,
           w = 1.f + chart.lx * px + chart.ly * py;
     if (beside && !(beside->nx * px + beside->ny * py + beside->at > 0)) continue;
@@ -185,14 +190,18 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, 1, &v));
   rc_rails r = median_of(chart, lines, *count);
-  set_view(&images[coarse], &masks[coarse], rc_chart_coarser(*chart, coarse), NULL, v);
+  set_view(&images[coarse], &masks[coarse], rc_chart_coarser(*chart, coarse),
+           all_of(&masks[coarse]), NULL, v);
   if (runs(v, r)) {
     for (int i = 0; i < *count; i++) reach_px = fmaxf(reach_px, rc_crossing_length(&lines[i]));
     r = sharpened(v, r, reach_px / (float)(1 << coarse), COARSE_TURN);
-    set_view(&images[fine], &masks[fine], rc_chart_coarser(*chart, fine), NULL, v);
+    set_view(&images[fine], &masks[fine], rc_chart_coarser(*chart, fine), all_of(&masks[fine]),
+             NULL, v);
     *rails = sharpened(v, r, reach_px / (float)(1 << fine), FINE_TURN);
-  } else if (repeats(v, r)) {
-    *count = 0;
+  } else {
+    set_view(&images[coarse], &masks[coarse], rc_chart_coarser(*chart, coarse),
+             near_hole(&masks[coarse]), NULL, v);
+    if (repeats(v, r)) *count = 0;
   }
   rc_release(context, mark);
   return rc_poll(context);
@@ -212,7 +221,7 @@ recede_status rc_runs_on_both_sides(rc_context *context, const rc_image *images,
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, 1, &v));
   for (int i = 0; i < 2 && *result; i++, side = other_side(side)) {
-    set_view(&images[coarsest], &masks[coarsest], here, &side, v);
+    set_view(&images[coarsest], &masks[coarsest], here, all_of(&masks[coarsest]), &side, v);
     *result = runs(v, *rails);
   }
   rc_release(context, mark);
@@ -230,7 +239,8 @@ recede_status rc_repeats_beside(rc_context *context, const rc_image *images, con
   RC_TRY(RC_NEW(context, 1, &v));
   if (boundary->nx * (x - chart->x0) + boundary->ny * (y - chart->y0) + boundary->at < 0)
     b = other_side(b);
-  set_view(&images[coarsest], &masks[coarsest], rc_chart_coarser(*chart, coarsest), &b, v);
+  set_view(&images[coarsest], &masks[coarsest], rc_chart_coarser(*chart, coarsest),
+           all_of(&masks[coarsest]), &b, v);
   *result = repeats(v, (rc_rails){.a = d.a, .b = d.b});
   rc_release(context, mark);
   return rc_poll(context);

@@ -155,11 +155,11 @@ typedef struct boards_made {
   double joints, ends;
 } boards_made;
 
-static boards_made fill_boards(double slant_deg, const char *settings) {
+static boards_made fill_boards(pattern *draw, double slant_deg, const char *settings) {
   double kept = 0, all = 0, dark = 0, ends = 0;
   picture rows = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, joints, 16, slant_deg, 0);
   for (int seed = 0; seed < 2; seed++) {
-    picture p = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, boards, 16, slant_deg, 0);
+    picture p = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, draw, 16, slant_deg, 0);
     task t = task_new(p, settings);
     t.params.slant_deg = slant_deg, t.params.seed = seed;
     task_hole(&t, hole);
@@ -180,23 +180,36 @@ static boards_made fill_boards(double slant_deg, const char *settings) {
 }
 
 static void boards_run(void) {
-  boards_made flat = fill_boards(40, "quality=draft surface=flat");
-  boards_made raised = fill_boards(40, "quality=draft surface=raised");
+  boards_made flat = fill_boards(boards, 40, "quality=draft surface=flat");
+  boards_made raised = fill_boards(boards, 40, "quality=draft surface=raised");
   g_assert_cmpfloat(flat.joints, >, .85);
   g_assert_cmpfloat(raised.joints, >, .85);
-  boards_made free = fill_boards(40, "quality=draft surface=flat engine-rails=0");
+  boards_made free = fill_boards(boards, 40, "quality=draft surface=flat engine-rails=0");
   g_assert_cmpfloat(flat.joints, >, free.joints + .1);
+}
+
+/* A pier: boards between two rails, in water. */
+static double pier(double u, double v, int k) {
+  double side = fabs(u);
+  if (side > 8) return .5 + .02 * noise_at((int)floor(u), (int)floor(4 * v), 28);
+  return side > 7 ? .9 : boards(u, v, k);
+}
+
+/* Rails and water beside boards do not hide that these run. */
+static void boards_of_a_pier_run(void) {
+  g_assert_cmpfloat(fill_boards(pier, 0, "quality=draft").joints, >, .93);
+  g_assert_cmpfloat(fill_boards(pier, 20, "quality=draft").joints, >, .93);
 }
 
 /* Where all have one width: light and dark ones meet at ends, and none is bent to suit the others.
  */
 static void boards_are_filled_one_by_one(void) {
   for (int slant_deg = 0; slant_deg <= 20; slant_deg += 20) {
-    boards_made one_by_one = fill_boards(slant_deg, "quality=draft");
+    boards_made one_by_one = fill_boards(boards, slant_deg, "quality=draft");
     g_assert_cmpfloat(one_by_one.joints, >, .95);
     g_assert_cmpfloat(one_by_one.ends, >, .7);
     g_assert_cmpfloat(one_by_one.ends, <, 3);
-    boards_made together = fill_boards(slant_deg, "quality=draft engine-gauge=0");
+    boards_made together = fill_boards(boards, slant_deg, "quality=draft engine-gauge=0");
     g_assert_cmpfloat(one_by_one.joints, >, together.joints + .07);
   }
 }
@@ -301,6 +314,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/lines/markings", markings_keep_both_edges);
   g_test_add_func("/lines/boards", boards_run);
   g_test_add_func("/lines/one-by-one", boards_are_filled_one_by_one);
+  g_test_add_func("/lines/pier", boards_of_a_pier_run);
   g_test_add_func("/lines/tiles", tiles_do_not);
   g_test_add_func("/lines/sides", textures_keep_to_their_sides);
   g_test_add_func("/lines/same-bytes", same_for_threads);
