@@ -8,10 +8,10 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "plane/homogeneity.h"
+#include "plane/nearby.h"
 #include "plane/simplex.h"
 #include "plane/vanishing.h"
 
-#define RADIAN (M_PI / 180)
 /* The best coarse orientations that are looked at closer, for each of the two models. */
 #define STARTS 4
 #define CLOSER_STEPS 60
@@ -49,10 +49,7 @@
 #define TOLD_BY_ONE_POINT .6
 #define FAR_POINT .25
 
-static const double coarse_slants[] = {12, 25, 38, 50, 60, 70, 80, 90, 98};
-#define COARSE_SLANTS (int)(sizeof coarse_slants / sizeof *coarse_slants)
-#define COARSE_TILTS 12
-#define GRID (1 + COARSE_SLANTS * COARSE_TILTS)
+#define GRID RC_COARSE_LEANS
 /* Planes whose horizons pass through a vanishing point. */
 #define FAN 24
 #define COARSE (GRID + RC_VANISHING_POINTS * FAN)
@@ -137,9 +134,8 @@ static rc_point fan_of(const double v[3], int i) {
 
 static rc_point coarse_point(const search *s, int i) {
   if (i >= GRID) return fan_of(s->points[(i - GRID) / FAN].direction, (i - GRID) % FAN);
-  double slant = i ? coarse_slants[(i - 1) / COARSE_TILTS] * RADIAN : 0;
-  double tilt = i ? (i - 1) % COARSE_TILTS * (2 * M_PI / COARSE_TILTS) : 0;
-  return (rc_point){slant * sin(tilt), slant * cos(tilt), 0};
+  rc_lean lean = rc_coarse_lean(i);
+  return (rc_point){lean.across, lean.along, 0};
 }
 
 static void look(void *user, int item, int thread) {
@@ -184,16 +180,6 @@ static void ask_part(void *user, int item, int thread) {
   part.weight = weight;
   s->part[item] =
       rc_simplex(cost_of, &o, s->best.x, s->best.y, FIRST_SIZE, TOLERANCE, CLOSER_STEPS);
-}
-
-static void best_to_front(rc_point *p, int count, int front) {
-  for (int i = 0; i < front; i++)
-    for (int j = i + 1; j < count; j++)
-      if (p[j].cost < p[i].cost) {
-        rc_point held = p[i];
-        p[i] = p[j];
-        p[j] = held;
-      }
 }
 
 static float median(float *values, int count) {
@@ -296,7 +282,7 @@ static recede_status find_points(rc_context *context, search *s, const rc_image 
 static recede_status find_best(rc_context *context, search *s) {
   RC_TRY(rc_parallel(context, MODELS * COARSE, look, s));
   double frontal = s->coarse[FLAT][0].cost;
-  for (int m = 0; m < MODELS; m++) best_to_front(s->coarse[m], COARSE, STARTS);
+  for (int m = 0; m < MODELS; m++) rc_points_to_front(s->coarse[m], COARSE, STARTS);
   RC_TRY(rc_parallel(context, MODELS * STARTS, look_closer, s));
   choose(s);
   if (s->best.cost > (1 - LEAST_GAIN) * frontal) s->best = (rc_point){0, 0, frontal};
@@ -383,8 +369,11 @@ recede_status rc_estimate_plane(rc_context *context, const rc_image *image, cons
   RC_TRY(find_points(context, s, image, flags, on));
   RC_TRY(find_best(context, s));
   RC_TRY(rc_parallel(context, PARTS, ask_part, s));
-  rc_lean_normal(lean_of(&s->best), plane->normal);
+  rc_lean lean = lean_of(&s->best);
   *confidence = judge(s);
+  if (on && !s->model[FLAT].chosen) /* else all of it is said to lie on the plane */
+    RC_TRY(rc_nearby_correct(context, &s->model[FLAT], &lean, confidence));
+  rc_lean_normal(lean, plane->normal);
   rc_release(context, mark);
   return RECEDE_OK;
 }

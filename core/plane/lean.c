@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#define TILTS 12
+
 void rc_lean_normal(rc_lean lean, double normal[3]) {
   double slant = sqrt(lean.across * lean.across + lean.along * lean.along);
   double sinc = slant > 1e-9 ? sin(slant) / slant : 1;
@@ -27,4 +29,12 @@ double rc_lean_ceiling(rc_lean lean) {
   double n[3];
   rc_lean_normal(lean, n);
   return fmax(0, -n[1]);
+}
+
+rc_lean rc_coarse_lean(int i) {
+  static const double slants[] = {12, 25, 38, 50, 60, 70, 80, 90, 98};
+  double slant = i ? slants[(i - 1) / TILTS] * (M_PI / 180) : 0;
+  double tilt = i ? (i - 1) % TILTS * (2 * M_PI / TILTS) : 0;
+  rc_lean lean = {slant * sin(tilt), slant * cos(tilt)};
+  return lean;
 }

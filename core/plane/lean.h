@@ -15,4 +15,8 @@ double rc_lean_degrees(rc_lean a, rc_lean b);
 /* 1: a level ceiling; 0: a wall or a floor. */
 double rc_lean_ceiling(rc_lean lean);
 
+/* Orientations to begin with, all of them; the first is frontal. */
+#define RC_COARSE_LEANS 109
+rc_lean rc_coarse_lean(int i);
+
 #endif

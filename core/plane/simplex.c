@@ -51,3 +51,13 @@ rc_point rc_simplex(rc_cost *cost, void *user, double x, double y, double size, 
   sort3(p);
   return p[0];
 }
+
+void rc_points_to_front(rc_point *points, int count, int front) {
+  for (int i = 0; i < front; i++)
+    for (int j = i + 1; j < count; j++)
+      if (points[j].cost < points[i].cost) {
+        rc_point held = points[j];
+        points[j] = points[i];
+        points[i] = held;
+      }
+}

@@ -13,4 +13,7 @@ typedef double rc_cost(void *user, double x, double y);
 rc_point rc_simplex(rc_cost *cost, void *user, double x, double y, double size, double tolerance,
                     int steps);
 
+/* Sorts the front cheapest of count points before the others. */
+void rc_points_to_front(rc_point *points, int count, int front);
+
 #endif

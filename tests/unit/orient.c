@@ -86,6 +86,27 @@ static void draw(texture_kind kind, double slant, double tilt, double on_x, doub
     }
 }
 
+/* n . r: what is nearer faces more of it, for its distance. */
+static double facing(double slant, double tilt, int x, int y) {
+  double s = slant * RADIAN, t = tilt * RADIAN, f = .5 * SIDE / tan(FOV * RADIAN / 2),
+         c = .5 * (SIDE - 1);
+  return (-sin(s) * sin(t) * (x - c) + sin(s) * cos(t) * (y - c)) / f + cos(s);
+}
+
+#define FLOOR_SLANT 80
+#define WALL_SLANT 65
+
+/* A floor, and a wall of the same on its left that recedes to the right, twice as far off. */
+static void draw_street(guint8 *gray) {
+  guint8 *wall = g_new(guint8, SIDE * SIDE);
+  draw(DOTS, FLOOR_SLANT, 0, .5 * SIDE, .9 * SIDE, gray);
+  draw(DOTS, WALL_SLANT, 90, .2 * SIDE, .4 * SIDE, wall);
+  for (int i = 0; i < SIDE * SIDE; i++)
+    if (facing(WALL_SLANT, 90, i % SIDE, i / SIDE) > 2 * facing(FLOOR_SLANT, 0, i % SIDE, i / SIDE))
+      gray[i] = wall[i];
+  g_free(wall);
+}
+
 typedef struct question {
   guint8 gray[SIDE * SIDE], mask[SIDE * SIDE], source[SIDE * SIDE];
   gboolean masked, sourced;
@@ -240,6 +261,26 @@ static void posts_on_boards_are_no_wall(void) {
   g_free(q);
 }
 
+/* The hole's plane is meant, whatever fills more of the picture. */
+static void a_wall_is_not_read_as_the_floor(void) {
+  question *on_floor = new_question(), *on_wall = new_question();
+  draw_street(on_floor->gray);
+  memcpy(on_wall->gray, on_floor->gray, sizeof on_wall->gray);
+  put_hole(on_floor, 230, SIDE - 90, 50, 30);
+  put_hole(on_wall, 60, 120, 40, 50);
+  g_assert_cmpint(ask(on_floor), ==, RECEDE_OK);
+  g_assert_cmpint(ask(on_wall), ==, RECEDE_OK);
+  g_test_message("floor %.1f deg off, %.2f; wall %.1f, %.2f",
+                 error_deg(&on_floor->answer, FLOOR_SLANT, 0), on_floor->answer.confidence,
+                 error_deg(&on_wall->answer, WALL_SLANT, 90), on_wall->answer.confidence);
+  g_assert_cmpfloat(error_deg(&on_floor->answer, FLOOR_SLANT, 0), <, 10);
+  g_assert_cmpfloat(error_deg(&on_wall->answer, WALL_SLANT, 90), <, 10);
+  g_assert_cmpfloat(on_floor->answer.confidence, >, RECEDE_CONFIDENCE_LOW);
+  g_assert_cmpfloat(on_wall->answer.confidence, >, RECEDE_CONFIDENCE_LOW);
+  g_free(on_floor);
+  g_free(on_wall);
+}
+
 /* It does not say that the sky lies on the plane, too. */
 static void a_source_of_everything_is_none(void) {
   question *none = new_question(), *everything = new_question();
@@ -336,6 +377,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/orient/horizon-inside", horizon_inside_the_picture);
   g_test_add_func("/orient/few-lines", few_lines_tell_what_many_do_not);
   g_test_add_func("/orient/posts", posts_on_boards_are_no_wall);
+  g_test_add_func("/orient/wall", a_wall_is_not_read_as_the_floor);
   g_test_add_func("/orient/source-all", a_source_of_everything_is_none);
   g_test_add_func("/orient/threads", threads_change_nothing);
   g_test_add_func("/orient/source-only", only_the_source_is_looked_at);
