@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """How well `recede orient` reads the plane: the angle between its normal and the true one.
 
-    ./dev bench orient                   the shared cases and photos
+    ./dev bench orient                   the shared cases and photos, and holes in drawn streets
     ./dev bench orient --cases FOLDER    other cases that make_cases.py's code has drawn
     ./dev bench orient 01 pier           those whose name begins so
 
@@ -22,6 +22,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'quality'))
 from evaluation import PROJECT, load_cases, synthetic_case  # noqa: E402
 from report import number, table  # noqa: E402
+from streets import load_streets  # noqa: E402
 
 LOW = .5       # RECEDE_CONFIDENCE_LOW
 GROSS_DEG = 25
@@ -100,19 +101,32 @@ def summary(name, rows):
             number(np.mean(seconds) if seconds else None, 2)]
 
 
+def wanted_cases(names):
+    streets = load_streets(names)
+    only_streets = names and all(name.startswith('street') for name in names)
+    return ([] if only_streets else load_cases(names)) + streets
+
+
+def group_of(row):
+    if row['photo']:
+        return 'photos'
+    return row['case'].split('_')[0] + 's' if row['case'].startswith('street') else 'drawn'
+
+
 def main():
     given = arguments()
     cases = ([synthetic_case(path) for path in sorted(given.cases.iterdir())] if given.cases
-             else load_cases(given.names))
+             else wanted_cases(given.names))
     with ThreadPoolExecutor(given.jobs) as pool:
         rows = list(pool.map(lambda case: measure(given.binary, case), cases))
     print(table(['case', 'error°', 'slant', 'tilt', 'confidence', ''],
                 [[row['case'], number(row['error']), number(row.get('slant')),
                   number(row.get('tilt')), number(row['confidence'], 2), verdict(row)]
                  for row in rows]))
-    groups = {'drawn': [row for row in rows if not row['photo']],
-              'photos': [row for row in rows if row['photo'] and
-                         (row['error'] is not None or row['seconds'] is None)]}
+    known = [row for row in rows if not row['photo'] or
+             row['error'] is not None or row['seconds'] is None]
+    groups = {name: [row for row in known if group_of(row) == name]
+              for name in ('drawn', 'photos', 'street-floors', 'street-walls')}
     print(table(['', 'cases', 'median°', 'p90°', f'< {GOOD_DEG}°', f'> {GROSS_DEG}°',
                  'of these not announced', f'< {GOOD_DEG}° but low', 'seconds'],
                 [summary(name, found) for name, found in groups.items() if found]))

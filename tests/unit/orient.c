@@ -298,8 +298,9 @@ static void a_source_of_everything_is_none(void) {
 
 static void threads_change_nothing(void) {
   question *one = new_question(), *many = new_question();
-  draw(DOTS, 40, 70, .5 * SIDE, .5 * SIDE, one->gray);
-  memcpy(many->gray, one->gray, sizeof one->gray);
+  draw_street(one->gray);
+  put_hole(one, 60, 120, 40, 50);
+  *many = *one;
   one->host.threads = 1;
   g_assert_cmpint(ask(one), ==, RECEDE_OK);
   for (int threads = 2; threads <= 3; threads++) {
@@ -343,7 +344,8 @@ static int cancel_at(void *user, const char *stage, double fraction) {
 static void cancel_works_at_any_poll(void) {
   question *q = new_question();
   cancelling c = {0, G_MAXINT};
-  draw(BRICKS, 45, 20, .5 * SIDE, .5 * SIDE, q->gray);
+  draw_street(q->gray);
+  put_hole(q, 60, 120, 40, 50);
   q->host.progress = cancel_at, q->host.user = &c;
   g_assert_cmpint(ask(q), ==, RECEDE_OK);
   int polls = c.calls;
@@ -357,7 +359,8 @@ static void cancel_works_at_any_poll(void) {
 
 static void a_failing_allocation_is_told(void) {
   question *q = new_question();
-  draw(BRICKS, 45, 20, .5 * SIDE, .5 * SIDE, q->gray);
+  draw_street(q->gray);
+  put_hole(q, 60, 120, 40, 50);
   recede_status status = RECEDE_NO_MEMORY;
   for (int n = 1; status == RECEDE_NO_MEMORY; n++) {
     q->host.fail_allocation = (uint64_t)n;
