@@ -47,6 +47,8 @@
  * have but one. Of two that are both farther than about 75 degrees from the view axis one is often
  * not the plane's: boards run across, and posts stand on them. */
 #define TOLD_BY_ONE_POINT .6
+/* A reading that misses one of two points, and the best holds both, is no other reading. */
+#define TOLD_SO_MUCH_BETTER .5
 #define FAR_POINT .25
 
 #define GRID RC_COARSE_LEANS
@@ -299,13 +301,25 @@ static double disagreement_deg(const search *s) {
   return sqrt(square);
 }
 
-/* The farthest other reading that explains the picture almost as well. */
+static double told_by_two_points(const search *s, const rc_point *reading) {
+  double n[3], told = 1;
+  rc_lean_normal(lean_of(reading), n);
+  for (int i = 0; i < RC_VANISHING_POINTS; i++)
+    told = fmin(told, s->points[i].support * (1 - missed(&s->points[i], n)));
+  return told;
+}
+
+/* The farthest other reading that explains the picture almost as well, and lines no worse. */
 static double ambiguity_deg(const search *s) {
-  double farthest = 0;
+  double farthest = 0, told = told_by_two_points(s, &s->best);
   for (int m = 0; m < MODELS; m++)
-    for (int i = 0; i < STARTS; i++)
-      if (s->closer[m][i].cost < ALMOST * s->best.cost)
-        farthest = fmax(farthest, rc_lean_degrees(lean_of(&s->best), lean_of(&s->closer[m][i])));
+    for (int i = 0; i < STARTS; i++) {
+      const rc_point *other = &s->closer[m][i];
+      if (other->cost >= ALMOST * s->best.cost ||
+          told - told_by_two_points(s, other) > TOLD_SO_MUCH_BETTER)
+        continue;
+      farthest = fmax(farthest, rc_lean_degrees(lean_of(&s->best), lean_of(other)));
+    }
   return farthest;
 }
 
@@ -329,12 +343,11 @@ static double falling(double value, double half) {
 
 /* How far lines alone tell the plane. */
 static double told_by_lines(const search *s) {
-  const rc_vanishing *first = &s->points[0], *second = &s->points[1];
+  const rc_vanishing *first = &s->points[0];
   double n[3];
   rc_lean_normal(lean_of(&s->best), n);
   double first_told = first->support * (1 - missed(first, n));
-  double second_told = second->support * (1 - missed(second, n));
-  return fmax(fmin(first_told, second_told),
+  return fmax(told_by_two_points(s, &s->best),
               TOLD_BY_ONE_POINT * first_told * fabs(first->direction[2]));
 }
 
