@@ -385,7 +385,7 @@ recede_status rc_estimate_plane(rc_context *context, const rc_image *image, cons
   rc_lean lean = lean_of(&s->best);
   *confidence = judge(s);
   if (on && !s->model[FLAT].chosen) /* else all of it is said to lie on the plane */
-    RC_TRY(rc_nearby_correct(context, &s->model[FLAT], &lean, confidence));
+    RC_TRY(rc_nearby_correct(context, &s->model[FLAT], s->best_model == RAISED, &lean, confidence));
   rc_lean_normal(lean, plane->normal);
   rc_release(context, mark);
   return RECEDE_OK;

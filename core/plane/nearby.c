@@ -145,10 +145,12 @@ static double apart_deg(rc_lean a, rc_lean b) {
   return fmin(degrees, 180 - degrees);
 }
 
-static void correct(const nearby *n, rc_lean *lean, double *confidence) {
+static void correct(const nearby *n, bool picture_raised, rc_lean *lean, double *confidence) {
   const rc_point *best = &n->closer[0];
   rc_lean found = {best->x, best->y};
-  objective o = objective_of(n, 0);
+  rc_homogeneity own = n->h;
+  own.raised = picture_raised;
+  objective o = {&own, n->scratch};
   if (best->cost > LARGE_MISFIT || apart_deg(*lean, found) < ANOTHER_PLANE_DEG) return;
   double times = cost_of(&o, lean->across, lean->along) / fmax(best->cost, LEAST_COST);
   *confidence *= fmin(1, fmax(0, (GIVEN_UP - times) / (GIVEN_UP - DOUBTED)));
@@ -158,8 +160,8 @@ static void correct(const nearby *n, rc_lean *lean, double *confidence) {
                 falling(ambiguity_deg(n), LARGE_AMBIGUITY_DEG);
 }
 
-recede_status rc_nearby_correct(rc_context *context, const rc_homogeneity *flat, rc_lean *lean,
-                                double *confidence) {
+recede_status rc_nearby_correct(rc_context *context, const rc_homogeneity *flat, bool raised,
+                                rc_lean *lean, double *confidence) {
   rc_block *mark = rc_mark(context);
   nearby *n;
   RC_TRY(RC_NEW_ZERO(context, 1, &n));
@@ -170,7 +172,7 @@ recede_status rc_nearby_correct(rc_context *context, const rc_homogeneity *flat,
     rc_points_to_front(n->coarse, RC_COARSE_LEANS, STARTS);
     RC_TRY(rc_parallel(context, STARTS, look_closer, n));
     rc_points_to_front(n->closer, STARTS, STARTS);
-    correct(n, lean, confidence);
+    correct(n, raised, lean, confidence);
   }
   rc_release(context, mark);
   return RECEDE_OK;

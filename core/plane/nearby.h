@@ -7,8 +7,10 @@
 #include "plane/homogeneity.h"
 
 /* flat: the whole picture's, its reference beside what is meant. *lean and *confidence hold its
- * reading; where the cells nearby contradict it, they get theirs. */
-recede_status rc_nearby_correct(rc_context *context, const rc_homogeneity *flat, rc_lean *lean,
-                                double *confidence);
+ * reading, of a raised texture or a flat one; where the cells nearby contradict it, they get
+ * theirs.
+ */
+recede_status rc_nearby_correct(rc_context *context, const rc_homogeneity *flat, bool raised,
+                                rc_lean *lean, double *confidence);
 
 #endif

@@ -19,10 +19,9 @@
 #define FAVOUR_OF_CLEAR_LINES 2.
 /* What comes from another board is not what this one shows again and again beside the hole. */
 #define FAVOUR_OF_BOARDS 1.25
-/* Moves along the rails are from so many px to so many, no more than whole.c looks at; and so many
- * target pixels may find nothing along them: they go on from what lies beside them. */
+/* Moves along the rails are of so many px and more, nearest first, as many as whole.c looks at; and
+ * so many target pixels may find nothing along them: they go on from what lies beside them. */
 #define LEAST_MOVE_PX 6
-#define MOST_MOVE_PX 1000
 #define MOST_WITHOUT_COPY .02
 /* Boards have so many times the copies, for each has its own. */
 #define EACH_BOARD 3
@@ -112,11 +111,11 @@ static recede_status moves_along(rc_context *context, const rc_descent *e, const
                                  const rc_copy **moves, int *count) {
   rc_copy *made;
   rc_rails rails = rc_rails_coarser(e->rails, e->level_count - 1);
-  int most = level->width + level->height;
-  if (most > MOST_MOVE_PX) most = MOST_MOVE_PX;
+  int each = 2 * (2 * rails.rows + 1), most = level->width + level->height - LEAST_MOVE_PX;
+  if (most > RC_WHOLE_CANDIDATES / each) most = RC_WHOLE_CANDIDATES / each;
   *count = 0;
-  RC_TRY(RC_NEW(context, 2 * most * (2 * rails.rows + 1), &made));
-  for (int px = LEAST_MOVE_PX; px <= most; px++)
+  RC_TRY(RC_NEW(context, each * most, &made));
+  for (int px = LEAST_MOVE_PX; px < LEAST_MOVE_PX + most; px++)
     for (int sign = -1; sign <= 1; sign += 2)
       for (int row = -rails.rows; row <= rails.rows; row++) {
         float along = (float)(sign * px), across = (float)row * rails.gauge;

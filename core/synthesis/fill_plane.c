@@ -1,5 +1,6 @@
 /* Method plane: the only file that knows the order of the stages.
- * sources near -> tone -> pyramid -> sources that look alike -> lines, rails, boundary -> traits
+ * sources near -> tone -> pyramid -> sources that look alike -> lines, rails, boundary, gauge ->
+ * traits
  * -> start -> (search <-> vote) per level, coarse to fine -> composition -> detail. */
 #include <math.h>
 

@@ -207,6 +207,8 @@ static void make_classes(rc_level *level) {
       least = fminf(least, v), most = fmaxf(most, v);
     }
   level->ranges.log2_w0 = least;
+  level->ranges.count = 0;
+  if (most < least) return;
   int count = (int)((most - least) / RC_CLASS_OCTAVES) + 1;
   level->ranges.count = count > RC_MAX_CLASSES ? RC_MAX_CLASSES : count;
 }

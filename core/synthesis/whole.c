@@ -11,8 +11,6 @@
  * where edges go. Of a long one every n-th pixel. */
 #define RING_PX 3
 #define MOST_RING 200
-/* Not all sources, so that several starts differ. */
-#define CANDIDATES 2000
 #define MOST_COPIES 48
 /* A candidate is no better than none where it differs by more, in variances. */
 #define NO_FIT 2.f
@@ -170,7 +168,7 @@ static void draw(whole *w, uint64_t key) {
     for (int x = level->box.x0; x < level->box.x1; x++)
       if (rc_level_is_target(level, x, y)) sum_x += x, sum_y += y, count++;
   float x = (float)(sum_x / count) - level->chart.x0, y = (float)(sum_y / count) - level->chart.y0;
-  w->candidate_count = all.begin < all.end ? CANDIDATES : 0;
+  w->candidate_count = all.begin < all.end ? RC_WHOLE_CANDIDATES : 0;
   for (int n = 0; n < w->candidate_count; n++) {
     int sx, sy;
     rc_level_random_source(level, all, rc_random(key, (uint32_t)n, 0, 0), &sx, &sy);
@@ -180,7 +178,7 @@ static void draw(whole *w, uint64_t key) {
 }
 
 static void take(whole *w, const rc_copy *moves, int count) {
-  w->candidate_count = count < CANDIDATES ? count : CANDIDATES;
+  w->candidate_count = count < RC_WHOLE_CANDIDATES ? count : RC_WHOLE_CANDIDATES;
   for (int n = 0; n < w->candidate_count; n++) w->candidates[n].copy = moves[n];
 }
 
@@ -193,7 +191,7 @@ recede_status rc_start_whole(rc_context *context, rc_level *level, uint64_t key,
   RC_TRY(RC_NEW(context, MOST_RING, &w.ring));
   w.ring_count = collect_ring(level, step, w.ring);
   RC_TRY(RC_NEW(context, MOST_RING, &w.least));
-  RC_TRY(RC_NEW(context, CANDIDATES, &w.candidates));
+  RC_TRY(RC_NEW(context, RC_WHOLE_CANDIDATES, &w.candidates));
   if (move_count)
     take(&w, moves, move_count);
   else

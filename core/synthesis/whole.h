@@ -6,9 +6,12 @@
 
 #include "synthesis/search.h"
 
+/* So many copies are compared, not all there are: several starts differ. */
+#define RC_WHOLE_CANDIDATES 2000
+
 /* Gives every target pixel that is not locked one of at most `copies` copies, and the guide its
  * pixel; a = NAN where none of them has one. Costs are not known yet. The copies come from
- * moves, or where there are none from chance sources. */
+ * moves, the first RC_WHOLE_CANDIDATES of them, or where there are none from chance sources. */
 recede_status rc_start_whole(rc_context *context, rc_level *level, uint64_t key,
                              const rc_copy *moves, int move_count, int copies);
 

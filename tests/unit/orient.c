@@ -107,6 +107,38 @@ static void draw_street(guint8 *gray) {
   g_free(wall);
 }
 
+#define FINER 3
+
+/* Blades that stand up from a floor, far ones first, drawn finer and averaged. */
+static void draw_blades(double slant, guint8 *gray) {
+  int side = FINER * SIDE;
+  double most = facing(slant, 0, 0, SIDE - 1);
+  guint8 *fine = g_new(guint8, side * side);
+  memset(fine, 90, (gsize)(side * side));
+  for (int y = 0; y < side + 50 * FINER; y++) {
+    double w = facing(slant, 0, 0, y / FINER) / most;
+    if (w < .04) continue;
+    /* As many on each part of the plane, 1 / w^3 of them in one of the picture. */
+    int count = (int)(SIDE * fmin(3, .004 / (w * w * w)) / FINER + chance(0, y, 10));
+    for (int i = 0; i < count; i++) {
+      double x = side * chance(i, y, 11), lean = .3 * (chance(i, y, 12) - .5);
+      guint8 shade = (guint8)(20 + 220 * chance(i, y, 13));
+      for (int up = 0; up < (int)(FINER * 50 * w); up++) {
+        int from = (int)(x + lean * up), to = (int)(x + lean * up + FINER * 5 * w);
+        for (int px = MAX(from, 0); px < MIN(to, side) && y >= up && y - up < side; px++)
+          fine[(y - up) * side + px] = shade;
+      }
+    }
+  }
+  for (int i = 0; i < SIDE * SIDE; i++) {
+    int sum = 0;
+    for (int k = 0; k < FINER * FINER; k++)
+      sum += fine[(i / SIDE * FINER + k / FINER) * side + i % SIDE * FINER + k % FINER];
+    gray[i] = (guint8)(sum / (FINER * FINER));
+  }
+  g_free(fine);
+}
+
 typedef struct question {
   guint8 gray[SIDE * SIDE], mask[SIDE * SIDE], source[SIDE * SIDE];
   gboolean masked, sourced;
@@ -282,6 +314,20 @@ static void a_wall_is_not_read_as_the_floor(void) {
 }
 
 /* It does not say that the sky lies on the plane, too. */
+/* Blades beside the hole look like no flat texture of this plane, and are none. */
+static void a_meadow_is_no_wall(void) {
+  for (int slant = 60; slant <= 70; slant += 10) {
+    question *q = new_question();
+    draw_blades(slant, q->gray);
+    put_hole(q, 220, 240, 60, 45);
+    g_assert_cmpint(ask(q), ==, RECEDE_OK);
+    g_test_message("slant %d: %.1f deg off, %.2f", slant, error_deg(&q->answer, slant, 0),
+                   q->answer.confidence);
+    g_assert_cmpfloat(error_deg(&q->answer, slant, 0), <, 13);
+    g_free(q);
+  }
+}
+
 static void a_source_of_everything_is_none(void) {
   question *none = new_question(), *everything = new_question();
   draw(DOTS, 94, 0, .5 * SIDE, .9 * SIDE, none->gray);
@@ -381,6 +427,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/orient/few-lines", few_lines_tell_what_many_do_not);
   g_test_add_func("/orient/posts", posts_on_boards_are_no_wall);
   g_test_add_func("/orient/wall", a_wall_is_not_read_as_the_floor);
+  g_test_add_func("/orient/meadow", a_meadow_is_no_wall);
   g_test_add_func("/orient/source-all", a_source_of_everything_is_none);
   g_test_add_func("/orient/threads", threads_change_nothing);
   g_test_add_func("/orient/source-only", only_the_source_is_looked_at);

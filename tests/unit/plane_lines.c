@@ -304,6 +304,7 @@ static void same_for_threads(void) {
   /* Of four starts two are with lines, one of these from whole copies. */
   assert_same_for_threads(lines_drawn, "quality=draft surface=flat engine-starts=4");
   assert_same_for_threads(boards_drawn, "quality=draft surface=raised");
+  assert_same_for_threads(boards_drawn, "quality=draft"); /* one by one */
   assert_same_for_threads(verge, "quality=draft");
 }
 
