@@ -14,7 +14,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -122,6 +122,25 @@ def put(made, place):
     except OSError:
         if not place.exists():
             raise
+
+
+def drawn_cases(script, draw, count):
+    """The folder that draw(root, index, folder) has drawn its cases into, made once."""
+    root, script = working_folder(), Path(script)
+    cases = root / f'{script.stem}-{digest(root / "make_cases.py", script)}'
+    if cases.exists():
+        return cases
+    sys.path.insert(0, str(root))
+    import make_cases
+    for name in make_cases.PROC:
+        make_cases.load_tex(name)  # draws it, once
+    with tempfile.TemporaryDirectory(dir=root) as temporary:
+        made = Path(temporary) / script.stem
+        made.mkdir()
+        with ProcessPoolExecutor(os.cpu_count()) as pool:
+            list(pool.map(draw, [root] * count, range(count), [made] * count))
+        put(made, cases)
+    return cases
 
 
 def copy_data(folder, copy):

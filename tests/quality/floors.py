@@ -3,16 +3,12 @@ van on the road and its verge leaves. Drawn with the evaluation data's textures 
 its own cases have one texture each.
 """
 import json
-import os
 import sys
-import tempfile
-from concurrent.futures import ProcessPoolExecutor
-from pathlib import Path
 
 import cv2
 import numpy as np
 
-from evaluation import SIZE, digest, put, synthetic_case, working_folder
+from evaluation import SIZE, drawn_cases, synthetic_case
 
 # textures, slant and tilt, kind of hole, direction of the line's normal in the plane, degrees, and
 # width of the kerb, texels.
@@ -50,7 +46,7 @@ def sides(camera, mask, angle_deg, kerb):
 
 
 def draw(root, index, folder):
-    """One floor, as make_cases.py writes its cases."""
+    """One floor into the folder, as make_cases.py writes its cases."""
     sys.path.insert(0, str(root))
     import make_cases
     cv2.setNumThreads(1)
@@ -66,6 +62,7 @@ def draw(root, index, folder):
     truth = textures[0] * (1 - second) + textures[1] * second
     grey = KERB[0] + np.random.default_rng(index).normal(0, KERB[1], (SIZE, SIZE, 1))
     truth = np.clip(truth * (1 - on_kerb) + grey * on_kerb + .5, 0, 255).astype(np.uint8)
+    folder /= f'{index:03d}_{first}-{other}_s{slant}_t{tilt}_{kind}'
     folder.mkdir()
     pictures = {'truth': truth, 'mask': mask, 'input': np.where(mask[..., None] > 0, 0, truth)}
     for name, picture in pictures.items():
@@ -75,21 +72,7 @@ def draw(root, index, folder):
 
 def load_floors(wanted=()):
     """Every floor, or those whose name begins with one of the wanted words."""
-    root = working_folder()
-    names = [f'{index:03d}_{first}-{other}_s{slant}_t{tilt}_{kind}'
-             for index, (first, other, slant, tilt, kind, *_) in enumerate(FLOORS)]
-    cases = root / f'floors-{digest(root / "make_cases.py", Path(__file__))}'
-    if not cases.exists():
-        sys.path.insert(0, str(root))
-        import make_cases
-        for name in make_cases.PROC:
-            make_cases.load_tex(name)  # draws it, once
-        with tempfile.TemporaryDirectory(dir=root) as temporary:
-            made = Path(temporary) / 'floors'
-            made.mkdir()
-            with ProcessPoolExecutor(os.cpu_count()) as pool:
-                list(pool.map(draw, [root] * len(names), range(len(names)),
-                              [made / name for name in names]))
-            put(made, cases)
+    cases = drawn_cases(__file__, draw, len(FLOORS))
     wanted = tuple(wanted or ('',))
-    return [synthetic_case(cases / name) for name in names if name.startswith(wanted)]
+    return [synthetic_case(folder) for folder in sorted(cases.iterdir())
+            if folder.name.startswith(wanted)]

@@ -2,16 +2,12 @@
 evaluation data's textures; its own cases have one plane each.
 """
 import json
-import os
 import sys
-import tempfile
-from concurrent.futures import ProcessPoolExecutor
-from pathlib import Path
 
 import cv2
 import numpy as np
 
-from evaluation import Case, digest, put, working_folder
+from evaluation import Case, drawn_cases
 
 WIDTH, HEIGHT = 1000, 700
 SAMPLES = 2                # each way, of one pixel
@@ -132,20 +128,7 @@ def draw(root, index, folder):
 
 def load_streets(wanted=()):
     """Every hole, or those whose name begins with one of the wanted words."""
-    root = working_folder()
-    cases = root / f'streets-{digest(root / "make_cases.py", Path(__file__))}'
-    if not cases.exists():
-        sys.path.insert(0, str(root))
-        import make_cases
-        for name in make_cases.PROC:
-            make_cases.load_tex(name)  # draws it, once
-        with tempfile.TemporaryDirectory(dir=root) as temporary:
-            made = Path(temporary) / 'streets'
-            made.mkdir()
-            with ProcessPoolExecutor(os.cpu_count()) as pool:
-                list(pool.map(draw, [root] * len(STREETS), range(len(STREETS)),
-                              [made] * len(STREETS)))
-            put(made, cases)
+    cases = drawn_cases(__file__, draw, len(STREETS))
     found = []
     for folder in sorted(cases.iterdir()):
         meta = json.loads((folder / 'meta.json').read_text())
