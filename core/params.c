@@ -105,6 +105,8 @@ static const recede_param_info table[] = {
     STAGE("engine-gauge", engine_gauge, "and from other rows where boards have one width"),
     STAGE("engine-boundary", engine_boundary,
           "keep two textures to their sides of the straight line where they meet"),
+    STAGE("engine-regions", engine_regions,
+          "keep two textures to their sides where they meet in another way"),
     STAGE("engine-texture", engine_texture,
           "coarse levels compare the finer detail too, by strength and direction"),
     STAGE("engine-whole", engine_whole, "few whole copies start what lines cross (boards always)"),

@@ -7,11 +7,10 @@
 #include "base/parallel.h"
 #include "image/distance.h"
 #include "kernels/kernels.h"
+#include "synthesis/looks.h"
 
 /* A pixel's looks are those of the square around it: half a hole wide, unless the hole is thin. */
 #define HALF_PX 4
-/* So much of the square must be known. */
-#define LEAST_KNOWN .4
 /* What is beside the hole: so far from it, and every n-th pixel of that. */
 #define BESIDE_PX 9
 #define LEAST_SAMPLES 32
@@ -25,23 +24,11 @@
 /* Of larger levels only every n-th pixel is compared: thin holes have no coarse one. */
 #define MOST_COMPARED (1 << 16)
 
-/* Mean colour and the deviation of brightness. */
-#define LOOKS 4
-
-typedef struct looks {
-  float value[LOOKS];
-} looks;
-
-/* Of known pixels: how many, colours, brightness and its square. */
-typedef struct sums {
-  double known, colour[3], bright, square;
-} sums;
-
 typedef struct comparison {
   const rc_image *image;
   const rc_mask *flags;
   int width, height;
-  looks *sample;
+  rc_looks *sample;
   int32_t *sample_at; /* pixels */
   int sample_count;
   float most;        /* square of the distance from which on looks are unlike */
@@ -50,45 +37,14 @@ typedef struct comparison {
   uint8_t *unlike;   /* columns * rows */
 } comparison;
 
-static void add(sums *to, const sums *s) {
-  to->known += s->known, to->bright += s->bright, to->square += s->square;
-  for (int k = 0; k < 3; k++) to->colour[k] += s->colour[k];
+static bool look_at(const comparison *c, int x, int y, rc_looks *out) {
+  return rc_look(c->image, c->flags, x, y, HALF_PX, out);
 }
 
-static sums pixel_sums(const comparison *c, int x, int y) {
-  sums s = {0, {0, 0, 0}, 0, 0};
-  if (!(*rc_flag(c->flags, x, y) & RC_KNOWN)) return s;
-  const float *v = rc_pixel(c->image, x, y);
-  bool grey = c->image->channels == 1;
-  s.known = 1;
-  for (int k = 0; k < 3; k++) s.colour[k] = v[grey ? 0 : k];
-  s.bright = rc_brightness_at(c->image, x, y);
-  s.square = s.bright * s.bright;
-  return s;
-}
-
-/* False where too little is known. */
-static bool look(const comparison *c, int x, int y, looks *out) {
-  int x0 = x < HALF_PX ? 0 : x - HALF_PX, y0 = y < HALF_PX ? 0 : y - HALF_PX;
-  int x1 = x + HALF_PX >= c->width ? c->width : x + HALF_PX + 1;
-  int y1 = y + HALF_PX >= c->height ? c->height : y + HALF_PX + 1;
-  sums sum = {0, {0, 0, 0}, 0, 0};
-  for (int j = y0; j < y1; j++)
-    for (int i = x0; i < x1; i++) {
-      sums s = pixel_sums(c, i, j);
-      add(&sum, &s);
-    }
-  if (sum.known < LEAST_KNOWN * (x1 - x0) * (y1 - y0)) return false;
-  for (int k = 0; k < 3; k++) /* three channels weigh as one */
-    out->value[k] = (float)(sum.colour[k] / sum.known * .57735026918962576);
-  double bright = sum.bright / sum.known;
-  out->value[3] = (float)sqrt(fmax(sum.square / sum.known - bright * bright, 0));
-  return true;
-}
-
-static float distance_of(const looks *p, const looks *q) {
+static float distance_of(const rc_looks *p, const rc_looks *q) {
   float sum = 0;
-  for (int k = 0; k < LOOKS; k++) sum += (p->value[k] - q->value[k]) * (p->value[k] - q->value[k]);
+  for (int k = 0; k < RC_LOOKS; k++)
+    sum += (p->value[k] - q->value[k]) * (p->value[k] - q->value[k]);
   return sum;
 }
 
@@ -114,7 +70,7 @@ static void take_samples(comparison *c, const uint8_t *beside) {
   found = 0;
   for (size_t i = 0; i < pixels; i++) {
     int x = (int)(i % (size_t)c->width), y = (int)(i / (size_t)c->width);
-    if (!beside[i] || found++ % step || !look(c, x, y, &c->sample[c->sample_count])) continue;
+    if (!beside[i] || found++ % step || !look_at(c, x, y, &c->sample[c->sample_count])) continue;
     c->sample_at[c->sample_count++] = (int32_t)i;
   }
 }
@@ -165,11 +121,11 @@ static void compare_row(void *user, int row, int thread) {
   for (int column = 0; column < c->columns; column++) {
     int x = column * c->step + c->step / 2, y = row * c->step + c->step / 2, i = 0;
     uint8_t *unlike = c->unlike + (size_t)row * (size_t)c->columns + (size_t)column;
-    looks here;
+    rc_looks here;
     *unlike = 0;
     if (x >= c->width) x = c->width - 1;
     if (y >= c->height) y = c->height - 1;
-    if (!(*rc_flag(c->flags, x, y) & RC_KNOWN) || !look(c, x, y, &here)) continue;
+    if (!(*rc_flag(c->flags, x, y) & RC_KNOWN) || !look_at(c, x, y, &here)) continue;
     while (i < c->sample_count && distance_of(&here, &c->sample[i]) > c->most) i++;
     *unlike = i == c->sample_count;
   }

@@ -13,10 +13,6 @@
 /* Each px deeper in the hole counts 1.3 times less; 1.15 is too trusting. */
 #define CONFIDENCE_FALLOFF 1.3f
 
-/* So far from a boundary a source is half of its side, px of the finest level: beside it lie kerbs
- * and gutters, which are not to be copied farther in. */
-#define BESIDE_PX 8.f
-
 /* The finest level that is searched: what it settles on is composed. */
 static int last_searched(const rc_descent *e) { return rc_iterations_at(e, 0) ? 0 : 1; }
 
@@ -55,12 +51,11 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
     RC_TRY(
         rc_stage(context, coarsest ? "start" : "search", coarsest ? .1 : from, exponent ? to : .8));
     RC_TRY(rc_level_new(context, &e->flags[exponent], &chart, &level));
+    level.sides = rc_sides_coarser(e->sides, exponent);
     if (!coarsest) level.ranges = coarser.ranges;
     if (exponent >= last_searched(e))
       RC_TRY(rc_level_see(context, &e->images[exponent], &e->traits[exponent], gamma, e->gain,
                           coarsest, &level));
-    level.boundary = rc_boundary_coarser(e->boundary, exponent);
-    level.beside_px = BESIDE_PX / (float)(1 << exponent);
     if (!coarsest) {
       rc_field_from_coarser(&level, &coarser);
       rc_level_free_pixels(context, &coarser);

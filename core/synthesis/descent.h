@@ -24,7 +24,7 @@ typedef struct rc_descent {
   rc_crossing lines[RC_MOST_LINES]; /* px of the finest level */
   int line_count;
   rc_rails rails;
-  rc_boundary boundary;          /* the same */
+  rc_sides sides;                /* of the finest level */
   bool on_rails, continue_lines; /* starts that kept to them fitted well enough */
   uint64_t rest;                 /* out: pixels that only continue what lies beside them */
 } rc_descent;

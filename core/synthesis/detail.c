@@ -76,12 +76,13 @@ static recede_status smooth(rc_context *context, bands *b, const float *in, size
   return rc_parallel(context, b->height, smooth_along, b);
 }
 
-/* Mean square of a band by class of w, in the hole and in known pixels. */
+/* Mean square of a band by class of w and side, in the hole and in known pixels. */
 typedef struct energies {
-  double hole[RC_MAX_CLASSES], known[RC_MAX_CLASSES];
-  long hole_count[RC_MAX_CLASSES], known_count[RC_MAX_CLASSES];
+  double hole[RC_ALL_CLASSES], known[RC_ALL_CLASSES];
+  long hole_count[RC_ALL_CLASSES], known_count[RC_ALL_CLASSES];
 } energies;
 
+/* position: between the middles of the classes of its side. */
 static int class_at(const rc_level *level, int x, int y, float *position) {
   float w = rc_level_w(level, rc_level_x(level, x), rc_level_y(level, y));
   if (!(w > 1e-4f)) return -1;
@@ -108,13 +109,19 @@ typedef struct strip {
   uint8_t *group; /* of each pixel of the box: its class, + HOLE in the hole; or NONE */
 } strip;
 
+static int side_at(const rc_level *level, int x, int y) {
+  return rc_level_side(level, rc_level_x(level, x), rc_level_y(level, y));
+}
+
 static uint8_t group_at(const rc_level *level, int x, int y) {
   float position;
   size_t at = (size_t)y * (size_t)level->width + (size_t)x;
   bool hole = (level->flags[at] & RC_TARGET) != 0;
   if (!hole && level->room[at] <= 2 * RAMP_PX) return NONE;
   int c = class_at(level, x, y, &position);
-  return c < 0 ? NONE : (uint8_t)(hole ? HOLE + c : c);
+  if (c < 0) return NONE;
+  c += level->ranges.count * side_at(level, x, y);
+  return (uint8_t)(hole ? HOLE + c : c);
 }
 
 static void group_row(void *user, int y, int thread) {
@@ -161,7 +168,7 @@ static recede_status measure(rc_context *context, strip *s, energies *e) {
   return RECEDE_OK;
 }
 
-static void gains_of(const energies *e, int classes, float gains[RC_MAX_CLASSES]) {
+static void gains_of(const energies *e, int classes, float gains[RC_ALL_CLASSES]) {
   for (int c = 0; c < classes; c++) {
     gains[c] = 1.f;
     if (e->hole_count[c] < LEAST_PIXELS || e->known_count[c] < LEAST_PIXELS) continue;
@@ -184,7 +191,7 @@ typedef struct application {
   const bands *bands;
   const rc_level *level;
   const uint8_t *depth;
-  float gains[BANDS][RC_MAX_CLASSES];
+  float gains[BANDS][RC_ALL_CLASSES];
   float *layers[BANDS]; /* smoothed once, twice */
   rc_image *residual;
 } application;
@@ -200,10 +207,11 @@ static void apply_row(void *user, int y, int thread) {
     size_t i = ((size_t)y * (size_t)b->width + (size_t)x) * (size_t)b->channels;
     if (!rc_level_is_target(level, px, py) || class_at(level, px, py, &position) < 0) continue;
     float depth = (float)a->depth[(size_t)py * (size_t)level->width + (size_t)px];
+    int first = level->ranges.count * side_at(level, px, py);
     float ramp = fminf(depth / (RAMP_PX + 1.f), 1.f), more[BANDS];
     float *pixel = rc_pixel(a->residual, px, py);
     for (int n = 0; n < BANDS; n++)
-      more[n] = ramp * (gain_at(a->gains[n], level->ranges.count, position) - 1.f);
+      more[n] = ramp * (gain_at(a->gains[n] + first, level->ranges.count, position) - 1.f);
     for (int k = 0; k < b->channels; k++, i++) {
       float finer = pixel[k];
       for (int n = 0; n < BANDS; finer = a->layers[n++][i])
@@ -237,7 +245,7 @@ recede_status rc_match_detail(rc_context *context, const rc_level *level, rc_ima
     RC_TRY(smooth(context, &b, s.fine, s.fine_row, scratch, a.layers[n]));
     s.coarse = a.layers[n];
     RC_TRY(measure(context, &s, &e));
-    gains_of(&e, level->ranges.count, a.gains[n]);
+    gains_of(&e, level->ranges.count * level->ranges.sides, a.gains[n]);
     s.fine = a.layers[n], s.fine_row = row;
   }
   rc_distance_inside(level->flags, RC_TARGET, level->width, level->height, false, depth);

@@ -63,24 +63,14 @@ static void gather(const rc_level *level, rc_query *query) {
   query->gathered = true;
 }
 
-static bool has_boundary(const rc_level *level) {
-  return level->boundary.nx != 0.f || level->boundary.ny != 0.f;
-}
-
-/* From -1 to 1, 0 on the boundary; in the plane, so that what lies along it has the same. */
-static float side_of(const rc_level *level, float x, float y) {
-  const rc_boundary *b = &level->boundary;
-  float far = (b->nx * x + b->ny * y + b->at) / rc_level_w(level, x, y);
-  return far / (fabsf(far) + level->beside_px);
-}
-
 void rc_query_set(const rc_level *level, int x, int y, rc_query *query) {
   query->px = x;
   query->py = y;
   query->gathered = false;
   query->x = rc_level_x(level, x);
   query->y = rc_level_y(level, y);
-  query->side = has_boundary(level) ? side_of(level, query->x, query->y) : 0.f;
+  query->side =
+      rc_has_sides(&level->sides) ? rc_side(&level->sides, &level->chart, query->x, query->y) : 0.f;
   int c = level->classes[rc_level_at(level, x, y)];
   query->low = level->ranges.low[c];
   query->high = level->ranges.high[c];
@@ -141,8 +131,8 @@ float rc_query_cost(const rc_level *level, const rc_kernels *kernels, rc_query *
                     const rc_place *place, float limit) {
   rc_footprint footprint;
   float price = rc_place_price(level->variance, place, query->low, query->high);
-  if (has_boundary(level) && !place->beyond) {
-    float off = side_of(level, place->x, place->y) - query->side;
+  if (rc_has_sides(&level->sides) && !place->beyond) {
+    float off = rc_side(&level->sides, &level->chart, place->x, place->y) - query->side;
     price += RC_PRICE_SIDE * level->variance * off * off;
   }
   if (price >= limit || !set_footprint(level, &level->chart, copy, place, &footprint))

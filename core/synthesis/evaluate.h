@@ -13,8 +13,8 @@
 /* A raised copy may be off by its scale step and a little more. */
 #define RC_MOST_MISMATCH 1.1f
 
-/* And of a source on another side of the boundary than the target, per square of what their sides
- * differ by, 4 at the most. */
+/* And of a source on another side than the target, per square of what their sides differ by, 4 at
+ * the most. */
 #define RC_PRICE_SIDE 6.f
 
 #define RC_NO_COST 1e30f
@@ -23,7 +23,7 @@
 typedef struct rc_query {
   rc_patch patch;
   float per_weight; /* 1 / sum of weights */
-  float side;       /* of the level's boundary, -1 .. 1 */
+  float side;       /* -1 .. 1 */
   float x, y;       /* relative to the chart's origin */
   float low, high;  /* ratios allowed here */
   int32_t px, py;

@@ -1,6 +1,6 @@
 /* Method plane: the only file that knows the order of the stages.
- * sources near -> tone -> pyramid -> sources that look alike -> lines, rails, boundary, gauge ->
- * traits
+ * sources near -> tone -> pyramid -> sources that look alike -> lines, rails, boundary, gauge,
+ * regions -> traits
  * -> start -> (search <-> vote) per level, coarse to fine -> composition -> detail. */
 #include <math.h>
 
@@ -17,6 +17,7 @@
 #include "synthesis/iterate.h"
 #include "synthesis/near.h"
 #include "synthesis/problem.h"
+#include "synthesis/regions.h"
 #include "synthesis/surface.h"
 #include "synthesis/traits.h"
 
@@ -141,11 +142,25 @@ static recede_status find_lines(rc_context *context, rc_descent *e) {
                        &e->line_count, &e->rails));
   if (e->params->engine_boundary)
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
-                            &e->line_count, &e->rails, &e->boundary));
+                            &e->line_count, &e->rails, &e->sides.boundary));
   if (!e->params->engine_rails) e->rails = (rc_rails){0};
   if (rc_runs(&e->rails) && e->params->surface != RECEDE_SURFACE_RAISED && e->params->engine_gauge)
     RC_TRY(rc_gauge_find(context, e->images, e->flags, e->level_count, &e->chart, &e->rails));
   if (e->rails.rows) e->chart.raised = false; /* boards of one width lie */
+  return RECEDE_OK;
+}
+
+/* Two textures in the hole that no line tells apart, or of which one has two edges. */
+static recede_status find_regions(rc_context *context, rc_descent *e) {
+  int last = e->level_count - 1, chords;
+  rc_regions regions;
+  e->sides.px = 1;
+  if (!e->params->engine_regions || rc_runs(&e->rails)) return RECEDE_OK;
+  RC_TRY(rc_regions_find(context, &e->images[last], &e->flags[last], &regions, &chords));
+  if (!chords || (rc_has_sides(&e->sides) && chords == 1)) return RECEDE_OK;
+  regions.px = (float)(1 << last);
+  e->sides.boundary = (rc_boundary){0, 0, 0};
+  e->sides.regions = regions;
   return RECEDE_OK;
 }
 
@@ -230,6 +245,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(choose_surface(context, problem, &e, &raised));
   e.chart = chart_of(problem, raised);
   RC_TRY(find_lines(context, &e));
+  RC_TRY(find_regions(context, &e));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   context->report.surface = e.chart.raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;

@@ -98,19 +98,20 @@ static void set_variance(const making *m) {
 /* A counting sort of the sources by log2 w, bands of rows at a time. */
 typedef struct sorting {
   rc_level *level;
-  int32_t (*next)[RC_MAX_BINS]; /* of each band: sources in a bin, then where the next goes */
+  /* Of each band and side: sources in a bin, then where the next goes. */
+  int32_t (*next)[RC_MAX_SIDES][RC_MAX_BINS];
 } sorting;
 
 static void for_each_source(const sorting *s, int band, bool place) {
   const rc_level *level = s->level;
-  int32_t *next = s->next[band];
   int end = (band + 1) * BAND_ROWS < level->height ? (band + 1) * BAND_ROWS : level->height;
   for (int y = band * BAND_ROWS; y < end; y++)
     for (int x = 0; x < level->width; x++) {
       size_t i = (size_t)y * (size_t)level->width + (size_t)x;
       if (level->room[i] <= RC_PATCH_RADIUS + 1) continue;
-      float w = rc_level_w(level, rc_level_x(level, x), rc_level_y(level, y));
+      float rx = rc_level_x(level, x), ry = rc_level_y(level, y), w = rc_level_w(level, rx, ry);
       if (!(w > 0.f)) continue;
+      int32_t *next = s->next[band][rc_level_side(level, rx, ry)];
       int bin = (int)((rc_log2(w) - level->bin_log2_w0) * RC_BINS_PER_OCTAVE);
       bin = bin < 0 ? 0 : bin >= level->bins ? level->bins - 1 : bin;
       if (place) level->order[next[bin]] = (int32_t)i;
@@ -141,36 +142,57 @@ static void set_bins(rc_level *level) {
   if (level->bins > RC_MAX_BINS) level->bins = RC_MAX_BINS;
 }
 
+/* Where the sources of each band go. */
+static void set_first(const sorting *s, int bands) {
+  rc_level *level = s->level;
+  int32_t at = 0;
+  for (int side = 0; side < RC_MAX_SIDES; side++)
+    for (int b = 0; b <= level->bins; b++) {
+      level->first[side][b] = at;
+      for (int band = 0; band < bands && b < level->bins; band++) {
+        int32_t count = s->next[band][side][b];
+        s->next[band][side][b] = at;
+        at += count;
+      }
+    }
+}
+
 recede_status rc_level_sort_sources(rc_context *context, rc_level *level) {
   sorting s = {level, NULL};
   int bands = (level->height + BAND_ROWS - 1) / BAND_ROWS;
   set_bins(level);
   RC_TRY(RC_NEW_ZERO(context, bands, &s.next));
   RC_TRY(rc_parallel(context, bands, count_band, &s));
-  level->first[0] = 0;
-  for (int b = 0; b < level->bins; b++) {
-    int32_t at = level->first[b];
-    for (int band = 0; band < bands; band++) {
-      int32_t count = s.next[band][b];
-      s.next[band][b] = at;
-      at += count;
-    }
-    level->first[b + 1] = at;
-  }
-  RC_TRY(RC_NEW(context, level->first[level->bins] + 1, &level->order));
+  set_first(&s, bands);
+  RC_TRY(RC_NEW(context, rc_level_all_sources(level).end + 1, &level->order));
   RC_TRY(rc_parallel(context, bands, place_band, &s));
   RC_FREE(context, &s.next);
   return RECEDE_OK;
 }
 
-/* Sources with w in low..high: a run of level->order. */
-static void bins_between(const rc_level *level, float low, float high, int *begin, int *end) {
+/* By sides, unless one has hardly any source. */
+static recede_status sort_by_sides(rc_context *context, rc_level *level) {
+  level->ranges.sides = rc_has_sides(&level->sides) ? RC_MAX_SIDES : 1;
+  RC_TRY(rc_level_sort_sources(context, level));
+  for (int side = 0; side < level->ranges.sides; side++) {
+    rc_sources own = rc_level_side_sources(level, side);
+    if (level->ranges.sides == 1 || own.end - own.begin >= LEAST_SOURCE_PIXELS) continue;
+    level->ranges.sides = 1;
+    RC_FREE(context, &level->order);
+    return rc_level_sort_sources(context, level);
+  }
+  return RECEDE_OK;
+}
+
+/* A side's sources with w in low..high: a run of level->order. */
+static void bins_between(const rc_level *level, int side, float low, float high, int *begin,
+                         int *end) {
   int from = rc_floor((rc_log2(low) - level->bin_log2_w0) * RC_BINS_PER_OCTAVE);
   int to = rc_floor((rc_log2(high) - level->bin_log2_w0) * RC_BINS_PER_OCTAVE) + 1;
   from = from < 0 ? 0 : from > level->bins ? level->bins : from;
   to = to < from ? from : to > level->bins ? level->bins : to;
-  *begin = level->first[from];
-  *end = level->first[to];
+  *begin = level->first[side][from];
+  *end = level->first[side][to];
 }
 
 static float log2_w_at(const rc_level *level, int x, int y) {
@@ -183,14 +205,15 @@ typedef struct class_extent {
   float least, most;
 } class_extent;
 
-static void classify(rc_level *level, class_extent extents[RC_MAX_CLASSES]) {
-  for (int c = 0; c < RC_MAX_CLASSES; c++) extents[c] = (class_extent){0, 1e9f, -1e9f};
+static void classify(rc_level *level, class_extent extents[RC_ALL_CLASSES]) {
+  for (int c = 0; c < RC_ALL_CLASSES; c++) extents[c] = (class_extent){0, 1e9f, -1e9f};
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
       if (!rc_level_is_target(level, x, y)) continue;
       float v = log2_w_at(level, x, y);
       int c = (int)((v - level->ranges.log2_w0) / RC_CLASS_OCTAVES);
       c = c < 0 ? 0 : c >= level->ranges.count ? level->ranges.count - 1 : c;
+      c += level->ranges.count * rc_level_side(level, rc_level_x(level, x), rc_level_y(level, y));
       level->classes[rc_level_at(level, x, y)] = (uint8_t)c;
       extents[c].count++;
       extents[c].least = fminf(extents[c].least, v);
@@ -215,31 +238,32 @@ static void make_classes(rc_level *level) {
 
 /* Widens a range until a target of this w has some source well inside it: a class's nearest and
  * farthest pixels are not its middle, and a footprint needs more room the more it is scaled. */
-static void reach_source(const rc_level *level, float w, float *low, float *high) {
+static void reach_source(const rc_level *level, int side, float w, float *low, float *high) {
   int begin, end;
   for (;;) {
-    bins_between(level, w * *low * REACH_BY, w * *high / REACH_BY, &begin, &end);
+    bins_between(level, side, w * *low * REACH_BY, w * *high / REACH_BY, &begin, &end);
     if (end - begin >= LEAST_REACHED || *high > WIDEST) return;
     *low /= REACH_BY, *high *= REACH_BY;
   }
 }
 
 /* Starts narrow and widens a class's range while it holds too little source. */
-static void set_ranges(rc_level *level, const class_extent extents[RC_MAX_CLASSES]) {
-  for (int c = 0; c < level->ranges.count; c++) {
+static void set_ranges(rc_level *level, const class_extent extents[RC_ALL_CLASSES]) {
+  for (int c = 0; c < level->ranges.count * level->ranges.sides; c++) {
     float low = NARROW_LOW, high = NARROW_HIGH;
-    float w = rc_exp2(level->ranges.log2_w0 + ((float)c + .5f) * RC_CLASS_OCTAVES);
+    int side = c / level->ranges.count, scale = c % level->ranges.count;
+    float w = rc_exp2(level->ranges.log2_w0 + ((float)scale + .5f) * RC_CLASS_OCTAVES);
     for (;;) {
       int begin, end;
-      bins_between(level, w * low, w * high, &begin, &end);
+      bins_between(level, side, w * low, w * high, &begin, &end);
       if (end - begin >= fmax(ENOUGH_SOURCE * extents[c].count, LEAST_SOURCE_PIXELS) ||
           high > WIDEST)
         break;
       low /= WIDEN_BY, high *= WIDEN_BY;
     }
     if (extents[c].count > 0) {
-      reach_source(level, rc_exp2(extents[c].least), &low, &high);
-      reach_source(level, rc_exp2(extents[c].most), &low, &high);
+      reach_source(level, side, rc_exp2(extents[c].least), &low, &high);
+      reach_source(level, side, rc_exp2(extents[c].most), &low, &high);
     }
     level->ranges.low[c] = low;
     level->ranges.high[c] = high;
@@ -249,7 +273,8 @@ static void set_ranges(rc_level *level, const class_extent extents[RC_MAX_CLASSE
 rc_sources rc_level_sources(const rc_level *level, float x, float y, int class_index) {
   rc_sources sources;
   float w = rc_level_w(level, x, y);
-  bins_between(level, w * level->ranges.low[class_index], w * level->ranges.high[class_index],
+  int side = class_index / level->ranges.count;
+  bins_between(level, side, w * level->ranges.low[class_index], w * level->ranges.high[class_index],
                &sources.begin, &sources.end);
   return sources;
 }
@@ -306,7 +331,7 @@ static recede_status take_pixels(rc_context *context, const rc_traits *traits, m
 
 recede_status rc_level_see(rc_context *context, const rc_image *image, const rc_traits *traits,
                            float gamma, float gain, bool coarsest, rc_level *level) {
-  class_extent extents[RC_MAX_CLASSES];
+  class_extent extents[RC_ALL_CLASSES];
   making m = {.image = image, .level = level, .gain = gain};
   RC_TRY(RC_NEW(context, (size_t)level->width * (size_t)level->height, &level->weight));
   RC_TRY(RC_NEW(context, level->height, &m.moments));
@@ -319,7 +344,7 @@ recede_status rc_level_see(rc_context *context, const rc_image *image, const rc_
   RC_FREE(context, &m.moments);
   RC_TRY(RC_NEW_ZERO(context, (size_t)level->box_w * (size_t)level->box_h, &level->classes));
   if (coarsest) {
-    RC_TRY(rc_level_sort_sources(context, level));
+    RC_TRY(sort_by_sides(context, level));
     make_classes(level);
   }
   classify(level, extents);

@@ -6,11 +6,15 @@
 #include "image/image.h"
 #include "kernels/kernels.h"
 #include "synthesis/copy.h"
+#include "synthesis/sides.h"
 #include "synthesis/traits.h"
 
 /* Target pixels are sorted by w into classes of .3 octave, each with its own range of scales. */
 #define RC_CLASS_OCTAVES .3f
 #define RC_MAX_CLASSES 24
+/* Where there are two sides those of the second have classes of their own, after the first's. */
+#define RC_MAX_SIDES 2
+#define RC_ALL_CLASSES (RC_MAX_SIDES * RC_MAX_CLASSES)
 /* Sources are sorted by w into bins this fine to draw random ones of a scale. */
 #define RC_BINS_PER_OCTAVE 32
 #define RC_MAX_BINS 512
@@ -18,21 +22,10 @@
 /* Which ratios w(source) / w(target) a class of target pixels may copy from. */
 typedef struct rc_ranges {
   float log2_w0; /* of the first class's lower end */
-  int count;
-  float low[RC_MAX_CLASSES], high[RC_MAX_CLASSES];
+  int count;     /* of classes on each side */
+  int sides;     /* 1 also where one of two has hardly any source */
+  float low[RC_ALL_CLASSES], high[RC_ALL_CLASSES];
 } rc_ranges;
-
-/* A straight line between two textures: a signed distance from it in px is nx x + ny y + at, x and
- * y relative to the chart's origin; n is a unit vector, or 0 where there is no such line. */
-typedef struct rc_boundary {
-  float nx, ny, at;
-} rc_boundary;
-
-/* The same boundary at a level 2^exponent times coarser. */
-static inline rc_boundary rc_boundary_coarser(rc_boundary boundary, int exponent) {
-  boundary.at /= (float)(1 << exponent);
-  return boundary;
-}
 
 typedef struct rc_level {
   int width, height;
@@ -53,13 +46,13 @@ typedef struct rc_level {
   uint8_t *classes;                    /* class of each box pixel */
   int32_t lane_offset[RC_PATCH_LANES]; /* of each lane of a patch, in pixels */
   rc_ranges ranges;
-  rc_boundary boundary;
-  float beside_px; /* what is nearer to it is beside it */
-  float variance;  /* of sources, byte^2, summed over the components */
-  /* Sources sorted by w: indices of pixels, bin b at order[first[b]] .. order[first[b + 1]]. NULL
-   * where nobody asks: the finer levels look nearby, and take the coarsest one's ranges over. */
+  rc_sides sides;
+  float variance; /* of sources, byte^2, summed over the components */
+  /* Sources sorted by side and w: indices of pixels, bin b of side s at order[first[s][b]] ..
+   * order[first[s][b + 1]]. NULL where nobody asks: the finer levels look nearby, and take the
+   * coarsest one's ranges over. */
   int32_t *order;
-  int32_t first[RC_MAX_BINS + 1];
+  int32_t first[RC_MAX_SIDES][RC_MAX_BINS + 1];
   float bin_log2_w0;
   int bins;
 } rc_level;
@@ -79,6 +72,10 @@ static inline bool rc_level_same_board(const rc_level *level, int x, int y, int 
   return !level->board || level->board[(size_t)y * width + (size_t)x] ==
                               level->board[(size_t)other_y * width + (size_t)other_x];
 }
+/* Which side's classes and sources a place has. */
+static inline int rc_level_side(const rc_level *level, float x, float y) {
+  return level->ranges.sides > 1 && rc_side(&level->sides, &level->chart, x, y) < 0.f;
+}
 static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
   return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & RC_TARGET) != 0;
 }
@@ -86,20 +83,27 @@ static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
 /* What only composition asks for: room, box and an empty field. */
 recede_status rc_level_new(rc_context *context, const rc_mask *flags, const rc_chart *chart,
                            rc_level *level);
-/* And what a search does. traits: the pixels, which are the level's from then on; where they have
- * none the picture's colours are, byte = value * gain + 128. gamma: a target pixel counts gamma
- * times less for each px it is deeper in the hole; 1 = the same. The coarsest level's ranges are
- * made here from what sources there are, the others' must be set. */
+/* And what a search does; sides must be set. traits: the pixels, which are the level's from then
+ * on; where they have none the picture's colours are, byte = value * gain + 128. gamma: a target
+ * pixel counts gamma times less for each px it is deeper in the hole; 1 = the same. The coarsest
+ * level's ranges are made here from what sources there are, the others' must be set. */
 recede_status rc_level_see(rc_context *context, const rc_image *image, const rc_traits *traits,
                            float gamma, float gain, bool coarsest, rc_level *level);
 recede_status rc_level_sort_sources(rc_context *context, rc_level *level);
 /* When a level is done: its field and ranges are all that the next finer one asks for. */
 void rc_level_free_pixels(rc_context *context, rc_level *level);
-/* The source pixels of the right scale for a target pixel of relative position (x, y) and class: a
- * run of level->order, empty when there are none. */
+/* A run of level->order, empty when there are none. */
 typedef struct rc_sources {
   int begin, end;
 } rc_sources;
+/* A side's, smallest w first. */
+static inline rc_sources rc_level_side_sources(const rc_level *level, int side) {
+  return (rc_sources){level->first[side][0], level->first[side][level->bins]};
+}
+static inline rc_sources rc_level_all_sources(const rc_level *level) {
+  return (rc_sources){0, level->first[RC_MAX_SIDES - 1][level->bins]};
+}
+/* Those of the right scale for a target pixel of relative position (x, y) and class. */
 rc_sources rc_level_sources(const rc_level *level, float x, float y, int class_index);
 /* A random one of a run that is not empty. */
 void rc_level_random_source(const rc_level *level, rc_sources sources, uint64_t bits, int *x,

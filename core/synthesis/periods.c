@@ -116,7 +116,7 @@ static float trait_of(const rc_level *level, uint32_t pixel) {
 recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key,
                               rc_copy periods[RC_MOST_PERIODS], int *count) {
   size_t pixels = (size_t)level->width * (size_t)level->height;
-  int sources = level->first[level->bins];
+  int sources = rc_level_all_sources(level).end;
   int third = (level->width < level->height ? level->width : level->height) / 3;
   correlation c = {.level = level, .flat = rc_chart_flat(level->chart)};
   float *trait;

@@ -25,19 +25,21 @@ static float w_at(const rc_level *level, int x, int y) {
   return rc_level_w(level, rc_level_x(level, x), rc_level_y(level, y));
 }
 
-/* Sources stand in order of w: targets farther than most of them take from the first, nearer ones
- * from the last. */
+/* A side's sources stand in order of w: targets farther than most of them take from the first,
+ * nearer ones from the last. */
 static bool draw(const rest *r, int x, int y, rc_copy *copy) {
   const rc_level *level = r->level;
-  int sources = level->first[level->bins], part = sources / NEAREST_PART + 1;
+  rc_sources own = rc_level_side_sources(
+      level, rc_level_side(level, rc_level_x(level, x), rc_level_y(level, y)));
+  int sources = own.end - own.begin, part = sources / NEAREST_PART + 1;
   float w = w_at(level, x, y);
   if (!sources || !(w > 0.f)) return false;
-  int32_t middle = level->order[sources / 2];
+  int32_t middle = level->order[own.begin + sources / 2];
   bool farther = w < w_at(level, middle % level->width, middle / level->width);
   for (int n = 0; n < TRIES; n++) {
     uint64_t bits = rc_random(r->key, (uint32_t)x, (uint32_t)y, (uint32_t)n);
     int i = (int)rc_below((uint32_t)bits, (uint32_t)(part < sources ? part : sources));
-    int32_t source = level->order[farther ? i : sources - 1 - i];
+    int32_t source = level->order[farther ? own.begin + i : own.end - 1 - i];
     *copy = rc_copy_between(&level->chart, rc_level_x(level, x), rc_level_y(level, y),
                             rc_level_x(level, source % level->width),
                             rc_level_y(level, source / level->width));

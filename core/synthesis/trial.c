@@ -102,7 +102,7 @@ static double contrast(const rc_level *level) {
       least = fminf(least, w), most = fmaxf(most, w);
       inside.sum += patch_variance(level, x, y), inside.count++;
     }
-  int sources = level->first[level->bins], step = sources / MOST_SAMPLES + 1;
+  int sources = rc_level_all_sources(level).end, step = sources / MOST_SAMPLES + 1;
   for (int i = 0; i < sources; i += step) {
     int x = level->order[i] % level->width, y = level->order[i] / level->width;
     float w = rc_level_w(level, rc_level_x(level, x), rc_level_y(level, y));

@@ -162,7 +162,7 @@ static void label_row(void *user, int row, int thread) {
  */
 static void draw(whole *w, uint64_t key) {
   const rc_level *level = w->level;
-  rc_sources all = {0, level->first[level->bins]};
+  rc_sources all = rc_level_all_sources(level);
   double sum_x = 0, sum_y = 0, count = 0;
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++)

@@ -1,0 +1,198 @@
+#include "synthesis/groups.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/eigen.h"
+#include "base/memory.h"
+#include "synthesis/looks.h"
+
+/* A pixel's looks are those of the square around it; then it is what most of that square is. */
+#define HALF_PX 2
+#define SIDE_PX (2 * HALF_PX + 1)
+/* Looks are told apart along the axis on which they vary most for what neighbouring squares differ
+ * by. There they vary so many times as much, and two groups explain so much of it: where two
+ * textures meet 4.3 to 17 and .80 to .94, single ones that reach 4 .58 to .76. */
+#define LEAST_RATIO 4.
+#define LEAST_EXPLAINED .78
+/* What has no noise at all must not decide: this part of the mean variance is added to all. */
+#define LEAST_NOISE 1e-3
+
+typedef struct grouping {
+  const rc_around *around;
+  int beside_px;
+  rc_looks *looks;
+  uint8_t *seen; /* pixels that have looks */
+} grouping;
+
+static bool is_beside(const grouping *g, size_t at) {
+  return g->seen[at] && g->around->from_hole[at] <= g->beside_px;
+}
+
+static void add_outer(double matrix[RC_LOOKS * RC_LOOKS], const double v[RC_LOOKS]) {
+  for (int i = 0; i < RC_LOOKS; i++)
+    for (int k = 0; k < RC_LOOKS; k++) matrix[i * RC_LOOKS + k] += v[i] * v[k];
+}
+
+/* Means beside the hole; false: hardly anything is known there. */
+static bool means(const grouping *g, double mean[RC_LOOKS]) {
+  double count = 0;
+  memset(mean, 0, RC_LOOKS * sizeof *mean);
+  for (size_t i = 0; i < g->around->pixels; i++) {
+    if (!is_beside(g, i)) continue;
+    for (int k = 0; k < RC_LOOKS; k++) mean[k] += (double)g->looks[i].value[k];
+    count++;
+  }
+  for (int k = 0; k < RC_LOOKS; k++) mean[k] /= fmax(count, 1);
+  return count > RC_LOOKS;
+}
+
+/* Covariances of the looks beside the hole, and of what squares next to each other differ by. */
+static void covariances(const grouping *g, const double mean[RC_LOOKS],
+                        double all[RC_LOOKS * RC_LOOKS], double near[RC_LOOKS * RC_LOOKS]) {
+  size_t width = (size_t)g->around->width, step[2] = {SIDE_PX, SIDE_PX * width};
+  double count = 0, pairs = 0, trace = 0, v[RC_LOOKS];
+  memset(all, 0, RC_LOOKS * RC_LOOKS * sizeof *all);
+  memset(near, 0, RC_LOOKS * RC_LOOKS * sizeof *near);
+  for (size_t i = 0; i < g->around->pixels; i++) {
+    if (!is_beside(g, i)) continue;
+    for (int k = 0; k < RC_LOOKS; k++) v[k] = (double)g->looks[i].value[k] - mean[k];
+    add_outer(all, v);
+    count++;
+    for (int n = 0; n < 2; n++) {
+      bool inside = n ? i + step[n] < g->around->pixels : i % width + SIDE_PX < width;
+      if (!inside || !is_beside(g, i + step[n])) continue;
+      for (int k = 0; k < RC_LOOKS; k++)
+        v[k] = (double)(g->looks[i + step[n]].value[k] - g->looks[i].value[k]);
+      add_outer(near, v);
+      pairs += 2; /* a difference has the variance of both */
+    }
+  }
+  for (int k = 0; k < RC_LOOKS * RC_LOOKS; k++) all[k] /= count, near[k] /= fmax(pairs, 1);
+  for (int k = 0; k < RC_LOOKS; k++) trace += all[k * RC_LOOKS + k];
+  for (int k = 0; k < RC_LOOKS; k++)
+    for (int n = 0; n < 2; n++)
+      (n ? all : near)[k * RC_LOOKS + k] += LEAST_NOISE * trace / RC_LOOKS + 1e-12;
+}
+
+/* The axis on which all varies most for what near does: near is made white, then it is the
+ * principal one. */
+static recede_status best_axis(rc_context *context, const double all[RC_LOOKS * RC_LOOKS],
+                               double near[RC_LOOKS * RC_LOOKS], double axis[RC_LOOKS],
+                               double *ratio) {
+  double values[RC_LOOKS], vectors[RC_LOOKS * RC_LOOKS];
+  double white[RC_LOOKS * RC_LOOKS], turned[RC_LOOKS * RC_LOOKS];
+  RC_TRY(rc_eigen(context, near, RC_LOOKS, RC_LOOKS, values, vectors));
+  for (int i = 0; i < RC_LOOKS; i++)
+    for (int k = 0; k < RC_LOOKS; k++)
+      white[i * RC_LOOKS + k] = vectors[i * RC_LOOKS + k] / sqrt(fmax(values[k], 1e-12));
+  for (int i = 0; i < RC_LOOKS; i++)
+    for (int k = 0; k < RC_LOOKS; k++) {
+      double sum = 0;
+      for (int m = 0; m < RC_LOOKS; m++)
+        for (int n = 0; n < RC_LOOKS; n++)
+          sum += white[m * RC_LOOKS + i] * all[m * RC_LOOKS + n] * white[n * RC_LOOKS + k];
+      turned[i * RC_LOOKS + k] = sum;
+    }
+  RC_TRY(rc_eigen(context, turned, RC_LOOKS, RC_LOOKS, values, vectors));
+  *ratio = values[0];
+  for (int i = 0; i < RC_LOOKS; i++) {
+    axis[i] = 0;
+    for (int k = 0; k < RC_LOOKS; k++) axis[i] += white[i * RC_LOOKS + k] * vectors[k * RC_LOOKS];
+  }
+  return RECEDE_OK;
+}
+
+static float along(const rc_looks *looks, const double axis[RC_LOOKS]) {
+  double sum = 0;
+  for (int k = 0; k < RC_LOOKS; k++) sum += axis[k] * (double)looks->value[k];
+  return (float)sum;
+}
+
+static int by_value(const void *a, const void *b) {
+  float p = *(const float *)a, q = *(const float *)b;
+  return (p > q) - (p < q);
+}
+
+/* Where two groups explain most of the variance of count sorted values (Otsu), and how much. */
+static float split_at(const float *value, size_t count, double *explained) {
+  double n = (double)count, total = 0, square = 0, sum = 0, most = 0;
+  float at = 0;
+  for (size_t i = 0; i < count; i++) total += (double)value[i];
+  for (size_t i = 0; i < count; i++) {
+    double off = (double)value[i] - total / n;
+    square += off * off;
+  }
+  for (size_t i = 1; i < count; i++) {
+    sum += (double)value[i - 1];
+    double below = (double)i, above = n - below;
+    double apart = sum / below - (total - sum) / above;
+    double between = below * above / n * apart * apart;
+    if (between > most) most = between, at = value[i - 1] + (value[i] - value[i - 1]) / 2;
+  }
+  *explained = square > 0 ? most / square : 0;
+  return at;
+}
+
+/* Each known pixel becomes what most of the square around it is. */
+static recede_status take_majority(rc_context *context, const rc_around *around, int8_t *label) {
+  int8_t *before;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, around->pixels, &before));
+  memcpy(before, label, around->pixels);
+  for (int y = 0; y < around->height; y++)
+    for (int x = 0; x < around->width; x++) {
+      size_t at = (size_t)y * (size_t)around->width + (size_t)x;
+      int sum = 0;
+      if (!around->from_hole[at]) continue;
+      for (int j = y - HALF_PX; j <= y + HALF_PX; j++)
+        for (int i = x - HALF_PX; i <= x + HALF_PX; i++)
+          if (rc_inside(around->width, around->height, i, j))
+            sum += before[(size_t)j * (size_t)around->width + (size_t)i];
+      if (sum) label[at] = sum > 0 ? 1 : -1;
+    }
+  rc_release(context, mark);
+  return rc_poll(context);
+}
+
+static recede_status look_around(rc_context *context, grouping *g) {
+  const rc_around *around = g->around;
+  RC_TRY(RC_NEW(context, around->pixels, &g->looks));
+  RC_TRY(RC_NEW(context, around->pixels, &g->seen));
+  for (size_t i = 0; i < around->pixels; i++) {
+    int x = around->box.x0 + (int)(i % (size_t)around->width);
+    int y = around->box.y0 + (int)(i / (size_t)around->width);
+    g->seen[i] = *rc_flag(around->flags, x, y) & RC_KNOWN &&
+                 rc_look(around->image, around->flags, x, y, HALF_PX, &g->looks[i]);
+  }
+  return rc_poll(context);
+}
+
+recede_status rc_two_groups(rc_context *context, const rc_around *around, int beside_px,
+                            int8_t *label, bool *two) {
+  double mean[RC_LOOKS], all[RC_LOOKS * RC_LOOKS], near[RC_LOOKS * RC_LOOKS], axis[RC_LOOKS];
+  double ratio, explained;
+  grouping g = {around, beside_px, NULL, NULL};
+  float *value;
+  size_t count = 0;
+  *two = false;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(look_around(context, &g));
+  if (!means(&g, mean)) {
+    rc_release(context, mark);
+    return RECEDE_OK;
+  }
+  covariances(&g, mean, all, near);
+  RC_TRY(best_axis(context, all, near, axis, &ratio));
+  RC_TRY(RC_NEW(context, around->pixels, &value));
+  for (size_t i = 0; i < around->pixels; i++)
+    if (is_beside(&g, i)) value[count++] = along(&g.looks[i], axis);
+  qsort(value, count, sizeof *value, by_value);
+  float at = split_at(value, count, &explained);
+  *two = ratio >= LEAST_RATIO && explained >= LEAST_EXPLAINED;
+  for (size_t i = 0; i < around->pixels; i++)
+    label[i] = !g.seen[i] ? 0 : along(&g.looks[i], axis) > at ? 1 : -1;
+  rc_release(context, mark);
+  return take_majority(context, around, label);
+}

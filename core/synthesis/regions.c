@@ -1,0 +1,309 @@
+#include "synthesis/regions.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "image/distance.h"
+#include "synthesis/groups.h"
+
+/* What is so far from the hole, in its widths, says what two textures there are. */
+#define BESIDE_OF_HOLE .6
+#define LEAST_BESIDE_PX 8
+/* Of thin holes the coarsest level is large, and patches see across. */
+#define MOST_PIXELS (1 << 17)
+/* Each of them has so much of the hole's border. */
+#define LEAST_SHARE .1
+/* Two changes so near to each other are a spur of one texture. */
+#define APART_PX 6.f
+#define MOST_CHANGES 4
+#define MOST_SEEN 32
+/* A change's direction is that of the edge so far outwards. */
+#define FOLLOWED_PX 7.f
+/* Chords may turn from the edges' directions: 1 - cos at both ends together. A right angle cut by a
+ * chord has .6; real ones had up to .2, chance ones from .86 on. */
+#define MOST_TURN .7f
+/* A chord's pixels; and so near to its ends the border's are not asked. */
+#define CHORD_PX .75f
+#define ENDS_PX 4.f
+/* The border is so wide. */
+#define BORDER_PX 2
+
+/* Where the edge of the textures meets that of the hole. */
+typedef struct change {
+  float x, y;
+  float ux, uy; /* the edge's direction outwards, a unit vector, or 0 */
+} change;
+
+typedef struct finder {
+  rc_context *context;
+  rc_around around;
+  int8_t *label;
+  change ends[MOST_SEEN]; /* all changes, spurs too */
+  int end_count;
+} finder;
+
+static bool on_border(const finder *f, int x, int y) {
+  const rc_around *a = &f->around;
+  size_t at = (size_t)y * (size_t)a->width + (size_t)x;
+  return rc_inside(a->width, a->height, x, y) && f->label[at] && a->from_hole[at] &&
+         a->from_hole[at] <= BORDER_PX;
+}
+
+static bool differ(const finder *f, int x, int y, int label) {
+  const rc_around *a = &f->around;
+  return rc_inside(a->width, a->height, x, y) &&
+         f->label[(size_t)y * (size_t)a->width + (size_t)x] == -label;
+}
+
+/* Whether a pixel of the border touches one with the other label. */
+static bool changes_at(const finder *f, int x, int y) {
+  int label = f->label[(size_t)y * (size_t)f->around.width + (size_t)x];
+  for (int j = y - 1; j <= y + 1; j++)
+    for (int i = x - 1; i <= x + 1; i++)
+      if (on_border(f, i, j) && differ(f, i, j, label)) return true;
+  return false;
+}
+
+/* The change that a pixel is part of: the middle of those that touch one another in left, from
+ * which they are taken. */
+static change collect(const finder *f, int32_t pixel, uint8_t *left, int32_t *stack) {
+  int width = f->around.width, depth = 0;
+  float x = 0, y = 0, count = 0;
+  stack[depth++] = pixel, left[pixel] = 0;
+  while (depth) {
+    int here = stack[--depth], hx = here % width, hy = here / width;
+    x += (float)hx, y += (float)hy, count++;
+    for (int j = hy - 1; j <= hy + 1; j++)
+      for (int i = hx - 1; i <= hx + 1; i++) {
+        if (!rc_inside(width, f->around.height, i, j) || !left[j * width + i]) continue;
+        stack[depth++] = j * width + i, left[j * width + i] = 0;
+      }
+  }
+  return (change){x / count, y / count, 0, 0};
+}
+
+/* Looks outwards where the edge leads. */
+static void follow(const finder *f, change *c) {
+  const rc_around *a = &f->around;
+  int reach = (int)FOLLOWED_PX, cx = (int)(c->x + .5f), cy = (int)(c->y + .5f);
+  for (int y = cy - reach; y <= cy + reach; y++)
+    for (int x = cx - reach; x <= cx + reach; x++) {
+      float dx = (float)x - c->x, dy = (float)y - c->y;
+      if (!rc_inside(a->width, a->height, x, y) || dx * dx + dy * dy > FOLLOWED_PX * FOLLOWED_PX)
+        continue;
+      size_t at = (size_t)y * (size_t)a->width + (size_t)x;
+      int label = a->from_hole[at] ? f->label[at] : 0;
+      if (!label || !(differ(f, x - 1, y, label) || differ(f, x + 1, y, label) ||
+                      differ(f, x, y - 1, label) || differ(f, x, y + 1, label)))
+        continue;
+      c->ux += dx, c->uy += dy;
+    }
+  float length = sqrtf(c->ux * c->ux + c->uy * c->uy);
+  if (length > 0) c->ux /= length, c->uy /= length;
+}
+
+static float apart(const change *a, const change *b) {
+  return sqrtf((a->x - b->x) * (a->x - b->x) + (a->y - b->y) * (a->y - b->y));
+}
+
+/* Takes pairs of changes that are spurs out. */
+static void drop_spurs(change changes[MOST_SEEN], int *count) {
+  for (int i = 0; i < *count; i++)
+    for (int k = i + 1; k < *count; k++) {
+      if (apart(&changes[i], &changes[k]) >= APART_PX) continue;
+      changes[k] = changes[--*count];
+      changes[i] = changes[--*count];
+      i = -1;
+      break;
+    }
+}
+
+/* count: none where there are more than can be told, or one texture has hardly any border. */
+static recede_status find_changes(finder *f, change changes[MOST_SEEN], int *count) {
+  const rc_around *a = &f->around;
+  uint8_t *left;
+  int32_t *stack;
+  double border = 0, first = 0;
+  rc_block *mark = rc_mark(f->context);
+  RC_TRY(RC_NEW_ZERO(f->context, a->pixels, &left));
+  RC_TRY(RC_NEW(f->context, a->pixels, &stack));
+  *count = 0;
+  for (int y = 0; y < a->height; y++)
+    for (int x = 0; x < a->width; x++) {
+      if (!on_border(f, x, y)) continue;
+      border++, first += f->label[y * a->width + x] > 0;
+      left[y * a->width + x] = changes_at(f, x, y);
+    }
+  for (size_t i = 0; i < a->pixels && *count < MOST_SEEN; i++)
+    if (left[i]) changes[(*count)++] = collect(f, (int32_t)i, left, stack);
+  rc_release(f->context, mark);
+  if (*count == MOST_SEEN || first < LEAST_SHARE * border || first > (1 - LEAST_SHARE) * border)
+    *count = 0;
+  memcpy(f->ends, changes, sizeof f->ends);
+  f->end_count = *count;
+  drop_spurs(changes, count);
+  for (int i = 0; i < *count; i++) follow(f, &changes[i]);
+  return rc_poll(f->context);
+}
+
+static float turn(const change *a, const change *b) {
+  float length = fmaxf(apart(a, b), 1e-6f);
+  float ux = (b->x - a->x) / length, uy = (b->y - a->y) / length;
+  return 2.f + a->ux * ux + a->uy * uy - b->ux * ux - b->uy * uy;
+}
+
+static float side_of_chord(const change *a, const change *b, const change *p) {
+  return (b->x - a->x) * (p->y - a->y) - (b->y - a->y) * (p->x - a->x);
+}
+
+static bool cross(const change *a, const change *b, const change *p, const change *q) {
+  return side_of_chord(a, b, p) * side_of_chord(a, b, q) < 0 &&
+         side_of_chord(p, q, a) * side_of_chord(p, q, b) < 0;
+}
+
+/* Orders changes so that chords from the first to the second, and from the third to the fourth,
+ * turn least. False: they turn too much. */
+static bool pair_up(change *c, int count) {
+  static const int order[3][MOST_CHANGES] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}};
+  change best[MOST_CHANGES], p[MOST_CHANGES];
+  float least = INFINITY;
+  if (count != MOST_CHANGES) return count == 2 && turn(&c[0], &c[1]) <= MOST_TURN;
+  for (int k = 0; k < 3; k++) {
+    for (int i = 0; i < MOST_CHANGES; i++) p[i] = c[order[k][i]];
+    float first = turn(&p[0], &p[1]), second = turn(&p[2], &p[3]);
+    if (first > MOST_TURN || second > MOST_TURN || first + second >= least ||
+        cross(&p[0], &p[1], &p[2], &p[3]))
+      continue;
+    least = first + second;
+    memcpy(best, p, sizeof best);
+  }
+  if (isfinite(least)) memcpy(c, best, sizeof best);
+  return isfinite(least);
+}
+
+static bool on_a_chord(const change *c, int count, float x, float y) {
+  for (int i = 0; i < count; i += 2) {
+    float ux = c[i + 1].x - c[i].x, uy = c[i + 1].y - c[i].y;
+    float square = fmaxf(ux * ux + uy * uy, 1e-6f);
+    float t = ((x - c[i].x) * ux + (y - c[i].y) * uy) / square;
+    t = fminf(fmaxf(t, 0.f), 1.f);
+    change nearest = {c[i].x + t * ux, c[i].y + t * uy, 0, 0}, here = {x, y, 0, 0};
+    if (apart(&nearest, &here) <= CHORD_PX) return true;
+  }
+  return false;
+}
+
+static bool near_an_end(const finder *f, float x, float y) {
+  change here = {x, y, 0, 0};
+  for (int i = 0; i < f->end_count; i++)
+    if (apart(&f->ends[i], &here) <= ENDS_PX) return true;
+  return false;
+}
+
+/* Spreads the border's labels into the hole, up to the chords. False: two of them meet. */
+static recede_status label_hole(const finder *f, const change *c, int count, bool *kept_apart) {
+  static const int dx[4] = {1, -1, 0, 0}, dy[4] = {0, 0, 1, -1};
+  const rc_around *a = &f->around;
+  int32_t *queue;
+  size_t first = 0, last = 0;
+  rc_block *mark = rc_mark(f->context);
+  RC_TRY(RC_NEW(f->context, a->pixels, &queue));
+  for (int y = 0; y < a->height; y++)
+    for (int x = 0; x < a->width; x++)
+      if (on_border(f, x, y) && !near_an_end(f, (float)x, (float)y))
+        queue[last++] = y * a->width + x;
+  *kept_apart = true;
+  while (first < last) {
+    int here = queue[first++];
+    for (int k = 0; k < 4; k++) {
+      int x = here % a->width + dx[k], y = here / a->width + dy[k], next = y * a->width + x;
+      if (!rc_inside(a->width, a->height, x, y) || a->from_hole[next] ||
+          on_a_chord(c, count, (float)x, (float)y))
+        continue;
+      if (f->label[next] == -f->label[here]) *kept_apart = false;
+      if (f->label[next]) continue;
+      f->label[next] = f->label[here];
+      queue[last++] = next;
+    }
+  }
+  rc_release(f->context, mark);
+  return rc_poll(f->context);
+}
+
+/* From the nearest pixel of another label, positive where the label is. */
+static recede_status measure_distances(const finder *f, float *distance) {
+  const rc_around *a = &f->around;
+  uint8_t *own, *depth;
+  rc_block *mark = rc_mark(f->context);
+  RC_TRY(RC_NEW(f->context, a->pixels, &own));
+  RC_TRY(RC_NEW(f->context, a->pixels, &depth));
+  for (int label = -1; label <= 1; label += 2) {
+    for (size_t i = 0; i < a->pixels; i++) own[i] = f->label[i] == label;
+    rc_distance_inside(own, 1, a->width, a->height, false, depth);
+    for (size_t i = 0; i < a->pixels; i++)
+      if (own[i]) distance[i] = (float)label * ((float)depth[i] - .5f);
+  }
+  rc_release(f->context, mark);
+  return rc_poll(f->context);
+}
+
+/* beside_px: how far from the hole its textures are looked at. */
+static recede_status measure_from_hole(finder *f, int *beside_px) {
+  rc_around *a = &f->around;
+  uint8_t *hole;
+  int deepest = 0;
+  RC_TRY(RC_NEW(f->context, a->pixels, &a->from_hole));
+  RC_TRY(RC_NEW(f->context, a->pixels, &hole));
+  for (size_t i = 0; i < a->pixels; i++) {
+    int x = a->box.x0 + (int)(i % (size_t)a->width), y = a->box.y0 + (int)(i / (size_t)a->width);
+    hole[i] = (*rc_flag(a->flags, x, y) & RC_TARGET) != 0;
+  }
+  rc_distance_inside(hole, 1, a->width, a->height, false, a->from_hole);
+  for (size_t i = 0; i < a->pixels; i++) {
+    deepest = a->from_hole[i] > deepest ? a->from_hole[i] : deepest;
+    hole[i] = !hole[i];
+  }
+  rc_distance_inside(hole, 1, a->width, a->height, false, a->from_hole);
+  *beside_px = (int)(BESIDE_OF_HOLE * 2 * deepest);
+  if (*beside_px < LEAST_BESIDE_PX) *beside_px = LEAST_BESIDE_PX;
+  return rc_poll(f->context);
+}
+
+static recede_status find(finder *f, float *distance, int *chords) {
+  change changes[MOST_SEEN];
+  int beside_px, count = 0;
+  bool found;
+  *chords = 0;
+  RC_TRY(measure_from_hole(f, &beside_px));
+  RC_TRY(RC_NEW_ZERO(f->context, f->around.pixels, &f->label));
+  RC_TRY(rc_two_groups(f->context, &f->around, beside_px, f->label, &found));
+  if (found) RC_TRY(find_changes(f, changes, &count));
+  if (!found || !pair_up(changes, count)) return RECEDE_OK;
+  RC_TRY(label_hole(f, changes, count, &found));
+  if (!found) return RECEDE_OK;
+  *chords = count / 2;
+  return measure_distances(f, distance);
+}
+
+recede_status rc_regions_find(rc_context *context, const rc_image *image, const rc_mask *flags,
+                              rc_regions *regions, int *chords) {
+  rc_box box = rc_box_of(flags, RC_SOURCE | RC_TARGET);
+  finder f = {.context = context,
+              .around = {.image = image,
+                         .flags = flags,
+                         .box = box,
+                         .width = box.x1 - box.x0,
+                         .height = box.y1 - box.y0}};
+  float *distance;
+  f.around.pixels = (size_t)f.around.width * (size_t)f.around.height;
+  *regions = (rc_regions){NULL, box.x0, box.y0, f.around.width, f.around.height, 1};
+  *chords = 0;
+  if (f.around.pixels > MOST_PIXELS) return RECEDE_OK;
+  RC_TRY(RC_NEW_ZERO(context, f.around.pixels, &distance));
+  rc_block *mark = rc_mark(context);
+  RC_TRY(find(&f, distance, chords));
+  rc_release(context, mark);
+  if (*chords) regions->distance = distance;
+  return RECEDE_OK;
+}

@@ -1,0 +1,17 @@
+/* Two textures that meet in the hole along an edge that is not straight, or along two: a verge of
+ * grass, a chimney among tiles, a path through a lawn. Beside the hole they are told apart by what
+ * they look like; in it straight chords lead from where one changes into the other to where they
+ * change again. */
+#ifndef RECEDE_SYNTHESIS_REGIONS_H
+#define RECEDE_SYNTHESIS_REGIONS_H
+
+#include "base/context.h"
+#include "image/image.h"
+#include "synthesis/sides.h"
+
+/* image and flags: the coarsest level. regions: x0, y0, width, height and distance, which is NULL
+ * where there are no two textures, or where chords cannot be told. chords: 0, 1 or 2. */
+recede_status rc_regions_find(rc_context *context, const rc_image *image, const rc_mask *flags,
+                              rc_regions *regions, int *chords);
+
+#endif
