@@ -16,8 +16,9 @@ typedef struct rc_around {
 } rc_around;
 
 /* Labels known pixels by what they look like, -1 or 1, others 0. beside_px: pixels so far from the
- * hole say what two things there are. False: there are none. */
+ * hole say what two things there are. explained: how much of how their looks vary, along the axis
+ * that tells them apart, 0..1; 0: there are no two. */
 recede_status rc_two_groups(rc_context *context, const rc_around *around, int beside_px,
-                            int8_t *label, bool *two);
+                            int8_t *label, double *explained);
 
 #endif

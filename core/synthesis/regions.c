@@ -12,6 +12,9 @@
 #define LEAST_BESIDE_PX 8
 /* Of thin holes the coarsest level is large, and patches see across. */
 #define MOST_PIXELS (1 << 17)
+/* How much two groups must explain where there is one chord: a pier's light and dark end have .84,
+ * and boards were cut between; a roof and a wall .87. Two chords hardly come by chance. */
+#define LEAST_OF_ONE_CHORD .86
 /* Each of them has so much of the hole's border. */
 #define LEAST_SHARE .1
 /* Two changes so near to each other are a spur of one texture. */
@@ -274,12 +277,13 @@ static recede_status find(finder *f, float *distance, int *chords) {
   change changes[MOST_SEEN];
   int beside_px, count = 0;
   bool found;
+  double explained;
   *chords = 0;
   RC_TRY(measure_from_hole(f, &beside_px));
   RC_TRY(RC_NEW_ZERO(f->context, f->around.pixels, &f->label));
-  RC_TRY(rc_two_groups(f->context, &f->around, beside_px, f->label, &found));
-  if (found) RC_TRY(find_changes(f, changes, &count));
-  if (!found || !pair_up(changes, count)) return RECEDE_OK;
+  RC_TRY(rc_two_groups(f->context, &f->around, beside_px, f->label, &explained));
+  if (explained > 0) RC_TRY(find_changes(f, changes, &count));
+  if (!pair_up(changes, count) || (count == 2 && explained < LEAST_OF_ONE_CHORD)) return RECEDE_OK;
   RC_TRY(label_hole(f, changes, count, &found));
   if (!found) return RECEDE_OK;
   *chords = count / 2;

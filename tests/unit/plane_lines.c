@@ -271,7 +271,8 @@ static double part_on_wrong_side(const char *settings) {
 }
 
 static void textures_keep_to_their_sides(void) {
-  double with = part_on_wrong_side(""), without = part_on_wrong_side("engine-boundary=0");
+  double with = part_on_wrong_side(""),
+         without = part_on_wrong_side("engine-boundary=0 engine-regions=0");
   g_assert_cmpfloat(with, <, .01);
   g_assert_cmpfloat(without, >, with + .02);
 }
