@@ -24,8 +24,10 @@
 /* A change's direction is that of the edge so far outwards. */
 #define FOLLOWED_PX 7.f
 /* Chords may turn from the edges' directions: 1 - cos at both ends together. A right angle cut by a
- * chord has .6; real ones had up to .2, chance ones from .86 on. */
+ * chord has .6; real ones had up to .2, chance ones from .76 on. */
 #define MOST_TURN .7f
+/* An edge that goes straight on out of the picture, where the hole does, counts as so much. */
+#define TURN_OF_LEAVING .35f
 /* A chord's pixels; and so near to its ends the border's are not asked. */
 #define CHORD_PX .75f
 #define ENDS_PX 4.f
@@ -37,6 +39,13 @@ typedef struct change {
   float x, y;
   float ux, uy; /* the edge's direction outwards, a unit vector, or 0 */
 } change;
+
+/* Lines through the hole from one change to another, or out of the picture. */
+typedef struct chords {
+  change end[MOST_CHANGES][2];
+  int count;
+  float turn; /* of all together */
+} chords;
 
 typedef struct finder {
   rc_context *context;
@@ -165,33 +174,64 @@ static bool cross(const change *a, const change *b, const change *p, const chang
          side_of_chord(p, q, a) * side_of_chord(p, q, b) < 0;
 }
 
-/* Orders changes so that chords from the first to the second, and from the third to the fourth,
- * turn least. False: they turn too much. */
-static bool pair_up(change *c, int count) {
-  static const int order[3][MOST_CHANGES] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}};
-  change best[MOST_CHANGES], p[MOST_CHANGES];
-  float least = INFINITY;
-  if (count != MOST_CHANGES) return count == 2 && turn(&c[0], &c[1]) <= MOST_TURN;
-  for (int k = 0; k < 3; k++) {
-    for (int i = 0; i < MOST_CHANGES; i++) p[i] = c[order[k][i]];
-    float first = turn(&p[0], &p[1]), second = turn(&p[2], &p[3]);
-    if (first > MOST_TURN || second > MOST_TURN || first + second >= least ||
-        cross(&p[0], &p[1], &p[2], &p[3]))
-      continue;
-    least = first + second;
-    memcpy(best, p, sizeof best);
+/* Where the edge would leave the picture if it went straight on through the hole. False: it would
+ * reach something known. */
+static bool leaves_the_picture(const finder *f, const change *c, change *end) {
+  const rc_around *a = &f->around;
+  bool in_hole = false;
+  *end = *c;
+  for (int step = 0; c->ux != 0 || c->uy != 0; step++) {
+    end->x -= .5f * c->ux, end->y -= .5f * c->uy;
+    int x = (int)floorf(end->x + .5f), y = (int)floorf(end->y + .5f);
+    if (!rc_inside(a->image->width, a->image->height, a->box.x0 + x, a->box.y0 + y)) return in_hole;
+    if (!rc_inside(a->width, a->height, x, y)) return false;
+    if (a->from_hole[y * a->width + x] == 0)
+      in_hole = true;
+    else if (in_hole || step > 4 * BORDER_PX)
+      return false;
   }
-  if (isfinite(least)) memcpy(c, best, sizeof best);
-  return isfinite(least);
+  return false;
 }
 
-static bool on_a_chord(const change *c, int count, float x, float y) {
-  for (int i = 0; i < count; i += 2) {
-    float ux = c[i + 1].x - c[i].x, uy = c[i + 1].y - c[i].y;
-    float square = fmaxf(ux * ux + uy * uy, 1e-6f);
-    float t = ((x - c[i].x) * ux + (y - c[i].y) * uy) / square;
+/* Adds a chord. False: it crosses another. */
+static bool add_chord(chords *to, const change *a, const change *b, float turned) {
+  change *next = to->end[to->count];
+  for (int i = 0; i < to->count; i++)
+    if (cross(a, b, &to->end[i][0], &to->end[i][1])) return false;
+  next[0] = *a, next[1] = *b;
+  to->count++, to->turn += turned;
+  return true;
+}
+
+/* Tries all ways to pair up the changes that are not taken, or to lead them out of the picture. */
+static void pair_up(const finder *f, const change *c, int count, unsigned taken,
+                    const chords *sofar, chords *best) {
+  int i = 0;
+  change out;
+  while (i < count && taken >> i & 1) i++;
+  if (i == count) {
+    if (sofar->turn < best->turn) *best = *sofar;
+    return;
+  }
+  chords with = *sofar;
+  if (leaves_the_picture(f, &c[i], &out) && add_chord(&with, &c[i], &out, TURN_OF_LEAVING))
+    pair_up(f, c, count, taken | 1u << i, &with, best);
+  for (int k = i + 1; k < count; k++) {
+    with = *sofar;
+    if (taken >> k & 1 || turn(&c[i], &c[k]) > MOST_TURN ||
+        !add_chord(&with, &c[i], &c[k], turn(&c[i], &c[k])))
+      continue;
+    pair_up(f, c, count, taken | 1u << i | 1u << k, &with, best);
+  }
+}
+
+static bool on_a_chord(const chords *c, float x, float y) {
+  for (int i = 0; i < c->count; i++) {
+    const change *from = &c->end[i][0], *to = &c->end[i][1];
+    float ux = to->x - from->x, uy = to->y - from->y;
+    float t = ((x - from->x) * ux + (y - from->y) * uy) / fmaxf(ux * ux + uy * uy, 1e-6f);
     t = fminf(fmaxf(t, 0.f), 1.f);
-    change nearest = {c[i].x + t * ux, c[i].y + t * uy, 0, 0}, here = {x, y, 0, 0};
+    change nearest = {from->x + t * ux, from->y + t * uy, 0, 0}, here = {x, y, 0, 0};
     if (apart(&nearest, &here) <= CHORD_PX) return true;
   }
   return false;
@@ -205,7 +245,7 @@ static bool near_an_end(const finder *f, float x, float y) {
 }
 
 /* Spreads the border's labels into the hole, up to the chords. False: two of them meet. */
-static recede_status label_hole(const finder *f, const change *c, int count, bool *kept_apart) {
+static recede_status label_hole(const finder *f, const chords *c, bool *kept_apart) {
   static const int dx[4] = {1, -1, 0, 0}, dy[4] = {0, 0, 1, -1};
   const rc_around *a = &f->around;
   int32_t *queue;
@@ -222,7 +262,7 @@ static recede_status label_hole(const finder *f, const change *c, int count, boo
     for (int k = 0; k < 4; k++) {
       int x = here % a->width + dx[k], y = here / a->width + dy[k], next = y * a->width + x;
       if (!rc_inside(a->width, a->height, x, y) || a->from_hole[next] ||
-          on_a_chord(c, count, (float)x, (float)y))
+          on_a_chord(c, (float)x, (float)y))
         continue;
       if (f->label[next] == -f->label[here]) *kept_apart = false;
       if (f->label[next]) continue;
@@ -273,25 +313,28 @@ static recede_status measure_from_hole(finder *f, int *beside_px) {
   return rc_poll(f->context);
 }
 
-static recede_status find(finder *f, float *distance, int *chords) {
+static recede_status find(finder *f, float *distance, int *count) {
   change changes[MOST_SEEN];
-  int beside_px, count = 0;
+  chords none = {.count = 0}, best = {.turn = INFINITY};
+  int beside_px, change_count = 0;
   bool found;
   double explained;
-  *chords = 0;
+  *count = 0;
   RC_TRY(measure_from_hole(f, &beside_px));
   RC_TRY(RC_NEW_ZERO(f->context, f->around.pixels, &f->label));
   RC_TRY(rc_two_groups(f->context, &f->around, beside_px, f->label, &explained));
-  if (explained > 0) RC_TRY(find_changes(f, changes, &count));
-  if (!pair_up(changes, count) || (count == 2 && explained < LEAST_OF_ONE_CHORD)) return RECEDE_OK;
-  RC_TRY(label_hole(f, changes, count, &found));
+  if (explained > 0) RC_TRY(find_changes(f, changes, &change_count));
+  if (!change_count || change_count > MOST_CHANGES) return RECEDE_OK;
+  pair_up(f, changes, change_count, 0, &none, &best);
+  if (!best.count || (best.count == 1 && explained < LEAST_OF_ONE_CHORD)) return RECEDE_OK;
+  RC_TRY(label_hole(f, &best, &found));
   if (!found) return RECEDE_OK;
-  *chords = count / 2;
+  *count = best.count;
   return measure_distances(f, distance);
 }
 
 recede_status rc_regions_find(rc_context *context, const rc_image *image, const rc_mask *flags,
-                              rc_regions *regions, int *chords) {
+                              rc_regions *regions, int *chord_count) {
   rc_box box = rc_box_of(flags, RC_SOURCE | RC_TARGET);
   finder f = {.context = context,
               .around = {.image = image,
@@ -302,12 +345,12 @@ recede_status rc_regions_find(rc_context *context, const rc_image *image, const 
   float *distance;
   f.around.pixels = (size_t)f.around.width * (size_t)f.around.height;
   *regions = (rc_regions){NULL, box.x0, box.y0, f.around.width, f.around.height, 1};
-  *chords = 0;
+  *chord_count = 0;
   if (f.around.pixels > MOST_PIXELS) return RECEDE_OK;
   RC_TRY(RC_NEW_ZERO(context, f.around.pixels, &distance));
   rc_block *mark = rc_mark(context);
-  RC_TRY(find(&f, distance, chords));
+  RC_TRY(find(&f, distance, chord_count));
   rc_release(context, mark);
-  if (*chords) regions->distance = distance;
+  if (*chord_count) regions->distance = distance;
   return RECEDE_OK;
 }

@@ -1,7 +1,7 @@
 /* Two textures that meet in the hole along an edge that is not straight, or along two: a verge of
  * grass, a chimney among tiles, a path through a lawn. Beside the hole they are told apart by what
  * they look like; in it straight chords lead from where one changes into the other to where they
- * change again. */
+ * change again, or out of the picture. */
 #ifndef RECEDE_SYNTHESIS_REGIONS_H
 #define RECEDE_SYNTHESIS_REGIONS_H
 
@@ -10,8 +10,8 @@
 #include "synthesis/sides.h"
 
 /* image and flags: the coarsest level. regions: x0, y0, width, height and distance, which is NULL
- * where there are no two textures, or where chords cannot be told. chords: 0, 1 or 2. */
+ * where there are no two textures, or where chords cannot be told. chord_count: 0 to 4. */
 recede_status rc_regions_find(rc_context *context, const rc_image *image, const rc_mask *flags,
-                              rc_regions *regions, int *chords);
+                              rc_regions *regions, int *chord_count);
 
 #endif

@@ -6,7 +6,7 @@
 #define SLANT_DEG 50
 /* Within so many px of an edge either texture will do. */
 #define EDGE_PX 4
-static const area hole = {85, 60, 225, 185};
+static const area middle = {85, 60, 225, 185}, bottom = {85, 130, 225, 240};
 
 static double strays(double v, int edge) {
   return .8 * sin(1.7 * v + 3 * edge) + .5 * sin(4.1 * v);
@@ -42,14 +42,14 @@ static bool is_lawn(const picture *p, int x, int y) {
 }
 
 static bool beside_an_edge(const picture *p, int x, int y) {
-  for (int j = y - EDGE_PX; j <= y + EDGE_PX; j++)
-    for (int i = x - EDGE_PX; i <= x + EDGE_PX; i++)
+  for (int j = MAX(y - EDGE_PX, 0); j <= MIN(y + EDGE_PX, p->view.height - 1); j++)
+    for (int i = MAX(x - EDGE_PX, 0); i <= MIN(x + EDGE_PX, p->view.width - 1); i++)
       if (is_lawn(p, i, j) != is_lawn(p, x, y)) return true;
   return false;
 }
 
 /* The part of the hole that has the other texture's colour. */
-static double part_wrong(pattern *floor, const char *settings) {
+static double part_wrong(pattern *floor, area hole, const char *settings) {
   double wrong = 0, all = 0;
   for (int seed = 0; seed < 3; seed++) {
     task t = task_new(draw(floor), settings);
@@ -68,15 +68,22 @@ static double part_wrong(pattern *floor, const char *settings) {
 }
 
 static void a_verge_stays_where_it_is(void) {
-  double with = part_wrong(verge, ""), without = part_wrong(verge, "engine-regions=0");
+  double with = part_wrong(verge, middle, ""),
+         without = part_wrong(verge, middle, "engine-regions=0");
   g_assert_cmpfloat(with, <, .006);
   g_assert_cmpfloat(without, >, with + .006);
 }
 
 static void a_path_goes_on(void) {
-  double with = part_wrong(path, ""), without = part_wrong(path, "engine-regions=0");
-  g_assert_cmpfloat(with, <, .03);
-  g_assert_cmpfloat(without, >, with + .1);
+  double with = part_wrong(path, middle, "");
+  g_assert_cmpfloat(with, <, .02);
+  g_assert_cmpfloat(part_wrong(path, middle, "engine-regions=0"), >, with + .1);
+}
+
+static void a_path_leaves_the_picture(void) {
+  double with = part_wrong(path, bottom, "");
+  g_assert_cmpfloat(with, <, .05);
+  g_assert_cmpfloat(part_wrong(path, bottom, "engine-regions=0"), >, with + .1);
 }
 
 /* What the source leaves out is not copied, and bricks fill its place. */
@@ -84,13 +91,13 @@ static void a_path_that_is_no_source(void) {
   task t = task_new(draw(path), "");
   double green = 0;
   t.params.slant_deg = SLANT_DEG;
-  task_hole(&t, hole);
+  task_hole(&t, middle);
   t.source = picture_new(320, 240, 1, RECEDE_U8);
   for (int y = 0; y < 240; y++)
     for (int x = 0; x < 320; x++) picture_set(&t.source, x, y, 0, abs(x - 160) > 50 ? 1.f : 0.f);
   task_succeeds(&t);
-  for (int y = hole.y0 + 2 * EDGE_PX; y < hole.y1 - 2 * EDGE_PX; y++)
-    for (int x = hole.x0; x < hole.x1; x++) green += is_lawn(&t.result, x, y);
+  for (int y = middle.y0 + 2 * EDGE_PX; y < middle.y1 - 2 * EDGE_PX; y++)
+    for (int x = middle.x0; x < middle.x1; x++) green += is_lawn(&t.result, x, y);
   g_test_message("%.0f px of lawn", green);
   g_assert_cmpfloat(green, <, 100);
   task_clear(&t);
@@ -104,7 +111,7 @@ static void one_texture_has_none(void) {
     for (int regions = 0; regions < 2; regions++) {
       task t = task_new(draw(floors[i]), regions ? "" : "engine-regions=0");
       t.params.slant_deg = SLANT_DEG;
-      task_hole(&t, hole);
+      task_hole(&t, middle);
       task_succeeds(&t);
       hash[regions] = t.report.output_hash;
       task_clear(&t);
@@ -119,7 +126,7 @@ static void same_for_threads(void) {
     task t = task_new(draw(path), "quality=draft");
     t.params.slant_deg = SLANT_DEG;
     t.host.threads = threads, t.host.kernel = threads - 1;
-    task_hole(&t, hole);
+    task_hole(&t, middle);
     task_succeeds(&t);
     if (threads == 1) hash = t.report.output_hash;
     g_assert_cmphex(t.report.output_hash, ==, hash);
@@ -131,6 +138,7 @@ int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/regions/verge", a_verge_stays_where_it_is);
   g_test_add_func("/regions/path", a_path_goes_on);
+  g_test_add_func("/regions/picture-end", a_path_leaves_the_picture);
   g_test_add_func("/regions/source", a_path_that_is_no_source);
   g_test_add_func("/regions/one", one_texture_has_none);
   g_test_add_func("/regions/same-bytes", same_for_threads);
