@@ -154,9 +154,11 @@ static recede_status find_lines(rc_context *context, rc_descent *e) {
 static recede_status find_regions(rc_context *context, rc_descent *e) {
   int last = e->level_count - 1, chords;
   rc_regions regions;
+  bool two;
   e->sides.px = 1;
   if (!e->params->engine_regions || rc_runs(&e->rails)) return RECEDE_OK;
-  RC_TRY(rc_regions_find(context, &e->images[last], &e->flags[last], &regions, &chords));
+  RC_TRY(rc_regions_find(context, &e->images[last], &e->flags[last], &regions, &two, &chords));
+  e->sides.apart = two && (chords || rc_has_sides(&e->sides));
   if (!chords || (rc_has_sides(&e->sides) && chords == 1)) return RECEDE_OK;
   regions.px = (float)(1 << last);
   e->sides.boundary = (rc_boundary){0, 0, 0};

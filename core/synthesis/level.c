@@ -170,9 +170,9 @@ recede_status rc_level_sort_sources(rc_context *context, rc_level *level) {
   return RECEDE_OK;
 }
 
-/* By sides, unless one has hardly any source. */
+/* By sides that look different, unless one has hardly any source. */
 static recede_status sort_by_sides(rc_context *context, rc_level *level) {
-  level->ranges.sides = rc_has_sides(&level->sides) ? RC_MAX_SIDES : 1;
+  level->ranges.sides = level->sides.apart ? RC_MAX_SIDES : 1;
   RC_TRY(rc_level_sort_sources(context, level));
   for (int side = 0; side < level->ranges.sides; side++) {
     rc_sources own = rc_level_side_sources(level, side);

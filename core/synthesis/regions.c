@@ -313,7 +313,7 @@ static recede_status measure_from_hole(finder *f, int *beside_px) {
   return rc_poll(f->context);
 }
 
-static recede_status find(finder *f, float *distance, int *count) {
+static recede_status find(finder *f, float *distance, bool *two, int *count) {
   change changes[MOST_SEEN];
   chords none = {.count = 0}, best = {.turn = INFINITY};
   int beside_px, change_count = 0;
@@ -324,7 +324,8 @@ static recede_status find(finder *f, float *distance, int *count) {
   RC_TRY(RC_NEW_ZERO(f->context, f->around.pixels, &f->label));
   RC_TRY(rc_two_groups(f->context, &f->around, beside_px, f->label, &explained));
   if (explained > 0) RC_TRY(find_changes(f, changes, &change_count));
-  if (!change_count || change_count > MOST_CHANGES) return RECEDE_OK;
+  *two = change_count > 0;
+  if (!*two || change_count > MOST_CHANGES) return RECEDE_OK;
   pair_up(f, changes, change_count, 0, &none, &best);
   if (!best.count || (best.count == 1 && explained < LEAST_OF_ONE_CHORD)) return RECEDE_OK;
   RC_TRY(label_hole(f, &best, &found));
@@ -334,7 +335,7 @@ static recede_status find(finder *f, float *distance, int *count) {
 }
 
 recede_status rc_regions_find(rc_context *context, const rc_image *image, const rc_mask *flags,
-                              rc_regions *regions, int *chord_count) {
+                              rc_regions *regions, bool *two, int *chord_count) {
   rc_box box = rc_box_of(flags, RC_SOURCE | RC_TARGET);
   finder f = {.context = context,
               .around = {.image = image,
@@ -345,11 +346,11 @@ recede_status rc_regions_find(rc_context *context, const rc_image *image, const 
   float *distance;
   f.around.pixels = (size_t)f.around.width * (size_t)f.around.height;
   *regions = (rc_regions){NULL, box.x0, box.y0, f.around.width, f.around.height, 1};
-  *chord_count = 0;
+  *two = false, *chord_count = 0;
   if (f.around.pixels > MOST_PIXELS) return RECEDE_OK;
   RC_TRY(RC_NEW_ZERO(context, f.around.pixels, &distance));
   rc_block *mark = rc_mark(context);
-  RC_TRY(find(&f, distance, chord_count));
+  RC_TRY(find(&f, distance, two, chord_count));
   rc_release(context, mark);
   if (*chord_count) regions->distance = distance;
   return RECEDE_OK;

@@ -9,9 +9,10 @@
 #include "image/image.h"
 #include "synthesis/sides.h"
 
-/* image and flags: the coarsest level. regions: x0, y0, width, height and distance, which is NULL
- * where there are no two textures, or where chords cannot be told. chord_count: 0 to 4. */
+/* image and flags: the coarsest level. two: what lies around the hole looks like two things, and
+ * each has part of its border. regions: x0, y0, width, height and distance, which is NULL where
+ * there are no two, or where chords cannot be told. chord_count: 0 to 4. */
 recede_status rc_regions_find(rc_context *context, const rc_image *image, const rc_mask *flags,
-                              rc_regions *regions, int *chord_count);
+                              rc_regions *regions, bool *two, int *chord_count);
 
 #endif

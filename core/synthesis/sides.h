@@ -28,7 +28,8 @@ typedef struct rc_regions {
 typedef struct rc_sides {
   rc_boundary boundary;
   rc_regions regions;
-  float px; /* one px of the level, in px of the finest */
+  bool apart; /* they look different: each has sources and detail of its own */
+  float px;   /* one px of the level, in px of the finest */
 } rc_sides;
 
 static inline bool rc_has_sides(const rc_sides *sides) {
