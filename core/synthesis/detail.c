@@ -168,12 +168,23 @@ static recede_status measure(rc_context *context, strip *s, energies *e) {
   return RECEDE_OK;
 }
 
-static void gains_of(const energies *e, int classes, float gains[RC_ALL_CLASSES]) {
-  for (int c = 0; c < classes; c++) {
+static bool enough(const energies *e, int c) {
+  return e->hole_count[c] >= LEAST_PIXELS && e->known_count[c] >= LEAST_PIXELS;
+}
+
+/* Where a side has too few pixels of a class, both together say what its gain is. */
+static void gains_of(const energies *e, const rc_ranges *ranges, float gains[RC_ALL_CLASSES]) {
+  energies sum = *e;
+  for (int c = 0; c < ranges->count * ranges->sides; c++) {
+    int other = (c + ranges->count) % (ranges->count * ranges->sides);
+    if (other != c && !enough(e, c)) {
+      sum.hole[c] += e->hole[other], sum.hole_count[c] += e->hole_count[other];
+      sum.known[c] += e->known[other], sum.known_count[c] += e->known_count[other];
+    }
     gains[c] = 1.f;
-    if (e->hole_count[c] < LEAST_PIXELS || e->known_count[c] < LEAST_PIXELS) continue;
-    double hole = e->hole[c] / (double)e->hole_count[c];
-    double known = e->known[c] / (double)e->known_count[c];
+    if (!enough(&sum, c)) continue;
+    double hole = sum.hole[c] / (double)sum.hole_count[c];
+    double known = sum.known[c] / (double)sum.known_count[c];
     float gain = hole > 0 ? (float)sqrt(known / hole) : 1.f;
     gains[c] = fminf(fmaxf(gain, LEAST_GAIN), MOST_GAIN);
   }
@@ -245,7 +256,7 @@ recede_status rc_match_detail(rc_context *context, const rc_level *level, rc_ima
     RC_TRY(smooth(context, &b, s.fine, s.fine_row, scratch, a.layers[n]));
     s.coarse = a.layers[n];
     RC_TRY(measure(context, &s, &e));
-    gains_of(&e, level->ranges.count * level->ranges.sides, a.gains[n]);
+    gains_of(&e, &level->ranges, a.gains[n]);
     s.fine = a.layers[n], s.fine_row = row;
   }
   rc_distance_inside(level->flags, RC_TARGET, level->width, level->height, false, depth);

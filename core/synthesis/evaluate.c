@@ -131,7 +131,7 @@ float rc_query_cost(const rc_level *level, const rc_kernels *kernels, rc_query *
                     const rc_place *place, float limit) {
   rc_footprint footprint;
   float price = rc_place_price(level->variance, place, query->low, query->high);
-  if (rc_has_sides(&level->sides) && !place->beyond) {
+  if (price < limit && rc_has_sides(&level->sides)) {
     float off = rc_side(&level->sides, &level->chart, place->x, place->y) - query->side;
     price += RC_PRICE_SIDE * level->variance * off * off;
   }

@@ -17,7 +17,8 @@
 #define LEAST_OF_ONE_CHORD .86
 /* Each of them has so much of the hole's border. */
 #define LEAST_SHARE .1
-/* Two changes so near to each other are a spur of one texture. */
+/* Two changes so near to each other are a spur of one texture (or lie on two parts of the hole that
+ * nearly touch: then nothing is told). */
 #define APART_PX 6.f
 #define MOST_CHANGES 4
 #define MOST_SEEN 32
@@ -152,7 +153,7 @@ static recede_status find_changes(finder *f, change changes[MOST_SEEN], int *cou
   rc_release(f->context, mark);
   if (*count == MOST_SEEN || first < LEAST_SHARE * border || first > (1 - LEAST_SHARE) * border)
     *count = 0;
-  memcpy(f->ends, changes, sizeof f->ends);
+  memcpy(f->ends, changes, (size_t)*count * sizeof *changes);
   f->end_count = *count;
   drop_spurs(changes, count);
   for (int i = 0; i < *count; i++) follow(f, &changes[i]);
@@ -244,7 +245,7 @@ static bool near_an_end(const finder *f, float x, float y) {
   return false;
 }
 
-/* Spreads the border's labels into the hole, up to the chords. False: two of them meet. */
+/* Spreads the border's labels into the hole, up to the chords. kept_apart: no two of them meet. */
 static recede_status label_hole(const finder *f, const chords *c, bool *kept_apart) {
   static const int dx[4] = {1, -1, 0, 0}, dy[4] = {0, 0, 1, -1};
   const rc_around *a = &f->around;
@@ -274,7 +275,8 @@ static recede_status label_hole(const finder *f, const chords *c, bool *kept_apa
   return rc_poll(f->context);
 }
 
-/* From the nearest pixel of another label, positive where the label is. */
+/* From the nearest chord or pixel of the other label, positive where the first is; what is not
+ * known has none. */
 static recede_status measure_distances(const finder *f, float *distance) {
   const rc_around *a = &f->around;
   uint8_t *own, *depth;
@@ -282,10 +284,11 @@ static recede_status measure_distances(const finder *f, float *distance) {
   RC_TRY(RC_NEW(f->context, a->pixels, &own));
   RC_TRY(RC_NEW(f->context, a->pixels, &depth));
   for (int label = -1; label <= 1; label += 2) {
-    for (size_t i = 0; i < a->pixels; i++) own[i] = f->label[i] == label;
+    for (size_t i = 0; i < a->pixels; i++)
+      own[i] = f->label[i] == label || (!f->label[i] && a->from_hole[i]);
     rc_distance_inside(own, 1, a->width, a->height, false, depth);
     for (size_t i = 0; i < a->pixels; i++)
-      if (own[i]) distance[i] = (float)label * ((float)depth[i] - .5f);
+      if (f->label[i] == label) distance[i] = (float)label * ((float)depth[i] - .5f);
   }
   rc_release(f->context, mark);
   return rc_poll(f->context);
@@ -352,6 +355,9 @@ recede_status rc_regions_find(rc_context *context, const rc_image *image, const 
   rc_block *mark = rc_mark(context);
   RC_TRY(find(&f, distance, two, chord_count));
   rc_release(context, mark);
-  if (*chord_count) regions->distance = distance;
+  if (*chord_count)
+    regions->distance = distance;
+  else
+    RC_FREE(context, &distance);
   return RECEDE_OK;
 }
