@@ -48,6 +48,14 @@ static bool beside_an_edge(const picture *p, int x, int y) {
   return false;
 }
 
+/* All but a margin to the left and above, so that what is looked at is not all of the picture. */
+static picture most_of_it(void) {
+  picture p = picture_new(320, 240, 1, RECEDE_U8);
+  picture_fill(&p, (area){0, 0, 320, 240}, 0);
+  picture_fill(&p, (area){30, 20, 320, 240}, 1);
+  return p;
+}
+
 /* The part of the hole that has the other texture's colour. */
 static double part_wrong(pattern *floor, area hole, const char *settings) {
   double wrong = 0, all = 0;
@@ -55,6 +63,7 @@ static double part_wrong(pattern *floor, area hole, const char *settings) {
     task t = task_new(draw(floor), settings);
     t.params.slant_deg = SLANT_DEG, t.params.seed = seed;
     task_hole(&t, hole);
+    t.source = most_of_it();
     task_succeeds(&t);
     for (int y = hole.y0; y < hole.y1; y++)
       for (int x = hole.x0; x < hole.x1; x++) {
@@ -71,7 +80,7 @@ static void a_verge_stays_where_it_is(void) {
   double with = part_wrong(verge, middle, ""),
          without = part_wrong(verge, middle, "engine-regions=0");
   g_assert_cmpfloat(with, <, .006);
-  g_assert_cmpfloat(without, >, with + .006);
+  g_assert_cmpfloat(without, >, with + .1);
 }
 
 static void a_path_goes_on(void) {
@@ -82,7 +91,7 @@ static void a_path_goes_on(void) {
 
 static void a_path_leaves_the_picture(void) {
   double with = part_wrong(path, bottom, "");
-  g_assert_cmpfloat(with, <, .05);
+  g_assert_cmpfloat(with, <, .025); /* .03 where both sides share their sources */
   g_assert_cmpfloat(part_wrong(path, bottom, "engine-regions=0"), >, with + .1);
 }
 
@@ -99,7 +108,7 @@ static void a_path_that_is_no_source(void) {
   for (int y = middle.y0 + 2 * EDGE_PX; y < middle.y1 - 2 * EDGE_PX; y++)
     for (int x = middle.x0; x < middle.x1; x++) green += is_lawn(&t.result, x, y);
   g_test_message("%.0f px of lawn", green);
-  g_assert_cmpfloat(green, <, 100);
+  g_assert_cmpfloat(green, <, 2);
   task_clear(&t);
 }
 
