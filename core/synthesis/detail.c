@@ -172,21 +172,25 @@ static bool enough(const energies *e, int c) {
   return e->hole_count[c] >= LEAST_PIXELS && e->known_count[c] >= LEAST_PIXELS;
 }
 
-/* Where a side has too few pixels of a class, both together say what its gain is. */
+static float gain_of(const energies *e, int c) {
+  double hole = e->hole[c] / (double)e->hole_count[c];
+  double known = e->known[c] / (double)e->known_count[c];
+  float gain = hole > 0 ? (float)sqrt(known / hole) : 1.f;
+  return fminf(fmaxf(gain, LEAST_GAIN), MOST_GAIN);
+}
+
+/* Where a path is as wide as the hole nothing of its own scale is known: it has the gain of its
+ * side's nearest class. */
 static void gains_of(const energies *e, const rc_ranges *ranges, float gains[RC_ALL_CLASSES]) {
-  energies sum = *e;
   for (int c = 0; c < ranges->count * ranges->sides; c++) {
-    int other = (c + ranges->count) % (ranges->count * ranges->sides);
-    if (other != c && !enough(e, c)) {
-      sum.hole[c] += e->hole[other], sum.hole_count[c] += e->hole_count[other];
-      sum.known[c] += e->known[other], sum.known_count[c] += e->known_count[other];
-    }
-    gains[c] = 1.f;
-    if (!enough(&sum, c)) continue;
-    double hole = sum.hole[c] / (double)sum.hole_count[c];
-    double known = sum.known[c] / (double)sum.known_count[c];
-    float gain = hole > 0 ? (float)sqrt(known / hole) : 1.f;
-    gains[c] = fminf(fmaxf(gain, LEAST_GAIN), MOST_GAIN);
+    int first = c / ranges->count * ranges->count, end = first + ranges->count;
+    gains[c] = enough(e, c) ? gain_of(e, c) : 1.f;
+    bool found = enough(e, c) || ranges->sides == 1;
+    for (int off = 1; off < ranges->count && !found; off++)
+      for (int other = c - off; other <= c + off && !found; other += 2 * off) {
+        found = other >= first && other < end && enough(e, other);
+        if (found) gains[c] = gain_of(e, other);
+      }
   }
 }
 

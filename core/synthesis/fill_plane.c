@@ -157,7 +157,9 @@ static recede_status find_regions(rc_context *context, rc_descent *e) {
   bool two;
   e->sides.px = 1;
   if (!e->params->engine_regions || rc_runs(&e->rails)) return RECEDE_OK;
-  RC_TRY(rc_regions_find(context, &e->images[last], &e->flags[last], &regions, &two, &chords));
+  rc_chart chart = rc_chart_coarser(e->chart, last);
+  RC_TRY(
+      rc_regions_find(context, &e->images[last], &e->flags[last], &chart, &regions, &two, &chords));
   e->sides.apart = two && (chords || rc_has_sides(&e->sides));
   if (!chords || (rc_has_sides(&e->sides) && chords == 1)) return RECEDE_OK;
   regions.px = (float)(1 << last);

@@ -15,6 +15,8 @@
 /* A class's range is widened until it holds this many times its target's pixels in sources. */
 #define ENOUGH_SOURCE 2.0
 #define LEAST_SOURCE_PIXELS 64
+/* A side has sources of its own if it has so many: a path that runs into depth has 24 to 38. */
+#define LEAST_OF_SIDE 16
 #define WIDEN_BY 1.3f
 /* Each single depth needs at least these; more would widen ordinary holes at the coarsest level,
  * where a row of the picture has few pixels. */
@@ -176,7 +178,7 @@ static recede_status sort_by_sides(rc_context *context, rc_level *level) {
   RC_TRY(rc_level_sort_sources(context, level));
   for (int side = 0; side < level->ranges.sides; side++) {
     rc_sources own = rc_level_side_sources(level, side);
-    if (level->ranges.sides == 1 || own.end - own.begin >= LEAST_SOURCE_PIXELS) continue;
+    if (level->ranges.sides == 1 || own.end - own.begin >= LEAST_OF_SIDE) continue;
     level->ranges.sides = 1;
     RC_FREE(context, &level->order);
     return rc_level_sort_sources(context, level);

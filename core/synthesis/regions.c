@@ -29,6 +29,8 @@
 #define MOST_TURN .7f
 /* An edge that goes straight on out of the picture, where the hole does, counts as so much. */
 #define TURN_OF_LEAVING .35f
+/* Edges of one thing that leave may get so many times as far from each other, in the plane. */
+#define MOST_OPENING 1.5f
 /* A chord's pixels; and so near to its ends the border's are not asked. */
 #define CHORD_PX .75f
 #define ENDS_PX 4.f
@@ -50,6 +52,7 @@ typedef struct chords {
 
 typedef struct finder {
   rc_context *context;
+  rc_chart chart; /* of the level */
   rc_around around;
   int8_t *label;
   change ends[MOST_SEEN]; /* all changes, spurs too */
@@ -113,7 +116,8 @@ static void follow(const finder *f, change *c) {
       c->ux += dx, c->uy += dy;
     }
   float length = sqrtf(c->ux * c->ux + c->uy * c->uy);
-  if (length > 0) c->ux /= length, c->uy /= length;
+  bool leads = length > .5f; /* px; else it leads nowhere */
+  c->ux = leads ? c->ux / length : 0, c->uy = leads ? c->uy / length : 0;
 }
 
 static float apart(const change *a, const change *b) {
@@ -194,11 +198,29 @@ static bool leaves_the_picture(const finder *f, const change *c, change *end) {
   return false;
 }
 
-/* Adds a chord. False: it crosses another. */
-static bool add_chord(chords *to, const change *a, const change *b, float turned) {
+static change in_plane(const finder *f, const change *c) {
+  float x = c->x + (float)f->around.box.x0 - f->chart.x0;
+  float y = c->y + (float)f->around.box.y0 - f->chart.y0;
+  float w = fmaxf(1.f + f->chart.lx * x + f->chart.ly * y, 1e-3f);
+  return (change){x / w, y / w, 0, 0};
+}
+
+/* Two edges that run the same way, farther and farther from each other: those of a stain. */
+static bool opens(const finder *f, const change *a, const change *b, const change *p,
+                  const change *q) {
+  change from[2] = {in_plane(f, a), in_plane(f, p)}, to[2] = {in_plane(f, b), in_plane(f, q)};
+  return a->ux * p->ux + a->uy * p->uy > 0 &&
+         apart(&to[0], &to[1]) > MOST_OPENING * apart(&from[0], &from[1]);
+}
+
+/* Adds a chord. False: it crosses another, or leaves the picture and opens from one. */
+static bool add_chord(const finder *f, chords *to, const change *a, const change *b, bool leaves,
+                      float turned) {
   change *next = to->end[to->count];
   for (int i = 0; i < to->count; i++)
-    if (cross(a, b, &to->end[i][0], &to->end[i][1])) return false;
+    if (cross(a, b, &to->end[i][0], &to->end[i][1]) ||
+        (leaves && opens(f, a, b, &to->end[i][0], &to->end[i][1])))
+      return false;
   next[0] = *a, next[1] = *b;
   to->count++, to->turn += turned;
   return true;
@@ -215,12 +237,12 @@ static void pair_up(const finder *f, const change *c, int count, unsigned taken,
     return;
   }
   chords with = *sofar;
-  if (leaves_the_picture(f, &c[i], &out) && add_chord(&with, &c[i], &out, TURN_OF_LEAVING))
+  if (leaves_the_picture(f, &c[i], &out) && add_chord(f, &with, &c[i], &out, true, TURN_OF_LEAVING))
     pair_up(f, c, count, taken | 1u << i, &with, best);
   for (int k = i + 1; k < count; k++) {
     with = *sofar;
     if (taken >> k & 1 || turn(&c[i], &c[k]) > MOST_TURN ||
-        !add_chord(&with, &c[i], &c[k], turn(&c[i], &c[k])))
+        !add_chord(f, &with, &c[i], &c[k], false, turn(&c[i], &c[k])))
       continue;
     pair_up(f, c, count, taken | 1u << i | 1u << k, &with, best);
   }
@@ -245,17 +267,15 @@ static bool near_an_end(const finder *f, float x, float y) {
   return false;
 }
 
-/* Spreads the border's labels into the hole, up to the chords. kept_apart: no two of them meet. */
-static recede_status label_hole(const finder *f, const chords *c, bool *kept_apart) {
+/* Spreads the labels of the border's pixels, near or not near ends of the edges, into what has none
+ * yet of the hole, up to the chords. */
+static void spread(const finder *f, const chords *c, bool near, int32_t *queue, bool *kept_apart) {
   static const int dx[4] = {1, -1, 0, 0}, dy[4] = {0, 0, 1, -1};
   const rc_around *a = &f->around;
-  int32_t *queue;
   size_t first = 0, last = 0;
-  rc_block *mark = rc_mark(f->context);
-  RC_TRY(RC_NEW(f->context, a->pixels, &queue));
   for (int y = 0; y < a->height; y++)
     for (int x = 0; x < a->width; x++)
-      if (on_border(f, x, y) && !near_an_end(f, (float)x, (float)y))
+      if (on_border(f, x, y) && near_an_end(f, (float)x, (float)y) == near)
         queue[last++] = y * a->width + x;
   *kept_apart = true;
   while (first < last) {
@@ -271,6 +291,17 @@ static recede_status label_hole(const finder *f, const chords *c, bool *kept_apa
       queue[last++] = next;
     }
   }
+}
+
+/* Labels the hole. kept_apart: no two labels meet but at chords. What only an edge's end leads to,
+ * in a corner of the picture, is asked last. */
+static recede_status label_hole(const finder *f, const chords *c, bool *kept_apart) {
+  int32_t *queue;
+  bool unused;
+  rc_block *mark = rc_mark(f->context);
+  RC_TRY(RC_NEW(f->context, f->around.pixels, &queue));
+  spread(f, c, false, queue, kept_apart);
+  spread(f, c, true, queue, &unused);
   rc_release(f->context, mark);
   return rc_poll(f->context);
 }
@@ -327,8 +358,8 @@ static recede_status find(finder *f, float *distance, bool *two, int *count) {
   RC_TRY(RC_NEW_ZERO(f->context, f->around.pixels, &f->label));
   RC_TRY(rc_two_groups(f->context, &f->around, beside_px, f->label, &explained));
   if (explained > 0) RC_TRY(find_changes(f, changes, &change_count));
-  *two = change_count > 0;
-  if (!*two || change_count > MOST_CHANGES) return RECEDE_OK;
+  *two = f->end_count > 0;
+  if (!change_count || change_count > MOST_CHANGES) return RECEDE_OK;
   pair_up(f, changes, change_count, 0, &none, &best);
   if (!best.count || (best.count == 1 && explained < LEAST_OF_ONE_CHORD)) return RECEDE_OK;
   RC_TRY(label_hole(f, &best, &found));
@@ -338,9 +369,11 @@ static recede_status find(finder *f, float *distance, bool *two, int *count) {
 }
 
 recede_status rc_regions_find(rc_context *context, const rc_image *image, const rc_mask *flags,
-                              rc_regions *regions, bool *two, int *chord_count) {
+                              const rc_chart *chart, rc_regions *regions, bool *two,
+                              int *chord_count) {
   rc_box box = rc_box_of(flags, RC_SOURCE | RC_TARGET);
   finder f = {.context = context,
+              .chart = *chart,
               .around = {.image = image,
                          .flags = flags,
                          .box = box,

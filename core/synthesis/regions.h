@@ -9,10 +9,11 @@
 #include "image/image.h"
 #include "synthesis/sides.h"
 
-/* image and flags: the coarsest level. two: what lies around the hole looks like two things, and
- * each has part of its border. regions: x0, y0, width, height and distance, which is NULL where
+/* image, flags and chart: the coarsest level. two: what lies around the hole looks like two things,
+ * and each has part of its border. regions: x0, y0, width, height and distance, which is NULL where
  * there are no two, or where chords cannot be told. chord_count: 0 to 4. */
 recede_status rc_regions_find(rc_context *context, const rc_image *image, const rc_mask *flags,
-                              rc_regions *regions, bool *two, int *chord_count);
+                              const rc_chart *chart, rc_regions *regions, bool *two,
+                              int *chord_count);
 
 #endif
