@@ -33,11 +33,6 @@ static double path(double u, double v, int k) {
   return inside ? lawn(u, v, k) : bricks(u, v, k);
 }
 
-/* Its upper part is all that the hole at the bottom leaves to see. */
-static double stain(double u, double v, int k) {
-  return hypot(u, v - 3) < 7 ? lawn(u, v, k) : bricks(u, v, k);
-}
-
 static picture draw(pattern *floor) {
   return picture_of_plane(320, 240, 3, RECEDE_U8, floor, 6, SLANT_DEG, 0);
 }
@@ -137,9 +132,6 @@ static void one_texture_has_none(void) {
   assert_no_regions(lawn, middle);
 }
 
-/* Its edges go apart, those of a path do not. */
-static void a_stain_does_not_grow(void) { assert_no_regions(stain, bottom); }
-
 static void same_for_threads(void) {
   guint64 hash = 0;
   for (int threads = 1; threads <= 3; threads++) {
@@ -161,7 +153,6 @@ int main(int argc, char **argv) {
   g_test_add_func("/regions/picture-end", a_path_leaves_the_picture);
   g_test_add_func("/regions/source", a_path_that_is_no_source);
   g_test_add_func("/regions/one", one_texture_has_none);
-  g_test_add_func("/regions/stain", a_stain_does_not_grow);
   g_test_add_func("/regions/same-bytes", same_for_threads);
   return g_test_run();
 }
