@@ -155,17 +155,17 @@ typedef struct boards_made {
   double joints, ends;
 } boards_made;
 
-static boards_made fill_boards(pattern *draw, double slant_deg, const char *settings) {
+static boards_made fill_boards(pattern *draw, double slant_deg, area filled, const char *settings) {
   double kept = 0, all = 0, dark = 0, ends = 0;
   picture rows = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, joints, 16, slant_deg, 0);
   for (int seed = 0; seed < 2; seed++) {
     picture p = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, draw, 16, slant_deg, 0);
     task t = task_new(p, settings);
     t.params.slant_deg = slant_deg, t.params.seed = seed;
-    task_hole(&t, hole);
+    task_hole(&t, filled);
     task_succeeds(&t);
-    for (int y = hole.y0; y < hole.y1; y++)
-      for (int x = hole.x0; x < hole.x1; x++) {
+    for (int y = filled.y0; y < filled.y1; y++)
+      for (int x = filled.x0; x < filled.x1; x++) {
         bool is_dark = picture_get(&t.result, x, y, 0) < .3f;
         float open = picture_get(&rows, x, y, 0);
         if (open < .1f) all++, kept += is_dark;
@@ -180,11 +180,11 @@ static boards_made fill_boards(pattern *draw, double slant_deg, const char *sett
 }
 
 static void boards_run(void) {
-  boards_made flat = fill_boards(boards, 40, "quality=draft surface=flat");
-  boards_made raised = fill_boards(boards, 40, "quality=draft surface=raised");
+  boards_made flat = fill_boards(boards, 40, hole, "quality=draft surface=flat");
+  boards_made raised = fill_boards(boards, 40, hole, "quality=draft surface=raised");
   g_assert_cmpfloat(flat.joints, >, .85);
   g_assert_cmpfloat(raised.joints, >, .85);
-  boards_made free = fill_boards(boards, 40, "quality=draft surface=flat engine-rails=0");
+  boards_made free = fill_boards(boards, 40, hole, "quality=draft surface=flat engine-rails=0");
   g_assert_cmpfloat(flat.joints, >, free.joints + .1);
 }
 
@@ -197,20 +197,31 @@ static double pier(double u, double v, int k) {
 
 /* Rails and water beside boards do not hide that these run. */
 static void boards_of_a_pier_run(void) {
-  g_assert_cmpfloat(fill_boards(pier, 0, "quality=draft").joints, >, .93);
-  g_assert_cmpfloat(fill_boards(pier, 20, "quality=draft").joints, >, .93);
+  g_assert_cmpfloat(fill_boards(pier, 0, hole, "quality=draft").joints, >, .93);
+  g_assert_cmpfloat(fill_boards(pier, 20, hole, "quality=draft").joints, >, .93);
 }
 
 /* Where all have one width: light and dark ones meet at ends, and none is bent to suit the others.
  */
 static void boards_are_filled_one_by_one(void) {
   for (int slant_deg = 0; slant_deg <= 20; slant_deg += 20) {
-    boards_made one_by_one = fill_boards(boards, slant_deg, "quality=draft");
+    boards_made one_by_one = fill_boards(boards, slant_deg, hole, "quality=draft");
     g_assert_cmpfloat(one_by_one.joints, >, .95);
     g_assert_cmpfloat(one_by_one.ends, >, .7);
     g_assert_cmpfloat(one_by_one.ends, <, 3);
-    boards_made together = fill_boards(boards, slant_deg, "quality=draft engine-gauge=0");
+    boards_made together = fill_boards(boards, slant_deg, hole, "quality=draft engine-gauge=0");
     g_assert_cmpfloat(one_by_one.joints, >, together.joints + .07);
+  }
+}
+
+/* Boards that end with the picture: no line crosses the hole. */
+static void boards_run_out_of_the_picture(void) {
+  area right = {200, 80, WIDTH, 160};
+  for (int slant_deg = 30; slant_deg <= 40; slant_deg += 10) {
+    boards_made on_rails = fill_boards(boards, slant_deg, right, "quality=draft");
+    boards_made free = fill_boards(boards, slant_deg, right, "quality=draft engine-rails=0");
+    g_assert_cmpfloat(on_rails.joints, >, .95);
+    g_assert_cmpfloat(on_rails.joints, >, free.joints + .15);
   }
 }
 
@@ -315,6 +326,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/lines/others", others_do_not);
   g_test_add_func("/lines/markings", markings_keep_both_edges);
   g_test_add_func("/lines/boards", boards_run);
+  g_test_add_func("/lines/out-of-the-picture", boards_run_out_of_the_picture);
   g_test_add_func("/lines/one-by-one", boards_are_filled_one_by_one);
   g_test_add_func("/lines/pier", boards_of_a_pier_run);
   g_test_add_func("/lines/tiles", tiles_do_not);
