@@ -98,6 +98,7 @@ static const recede_param_info table[] = {
           "search and copy without the brightness that drifts across the picture"),
     STAGE("engine-near", engine_near, "copy only from around the hole"),
     STAGE("engine-alike", engine_alike, "copy only what looks like something beside the hole"),
+    STAGE("engine-spots", engine_spots, "copy nothing that stands out more than all near the hole"),
     STAGE("engine-periods", engine_periods, "candidates at the texture's periods"),
     STAGE("engine-lines", engine_lines, "continue straight lines that cross the hole"),
     STAGE("engine-rails", engine_rails,

@@ -182,6 +182,13 @@ void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *ban
   for (int k = 0; k < tone->channels; k++) tone->terms[k][0] = s.value[k][0] / count;
 }
 
+bool rc_tone_drifts(const rc_tone *tone) {
+  for (int k = 0; k < tone->channels; k++)
+    for (int i = 1; i < TERMS; i++)
+      if (tone->terms[k][i] != 0) return true;
+  return false;
+}
+
 typedef struct application {
   const rc_tone *tone;
   const rc_mask *flags;

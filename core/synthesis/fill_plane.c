@@ -1,7 +1,7 @@
 /* Method plane: the only file that knows the order of the stages.
  * sources near -> tone -> pyramid -> sources that look alike -> lines, rails, boundary, gauge,
- * regions -> traits -> start -> (search <-> vote) per level, coarse to fine -> composition ->
- * detail. */
+ * regions -> sources without spots -> traits -> start -> (search <-> vote) per level, coarse to
+ * fine -> composition -> detail. */
 #include <math.h>
 
 #include "base/memory.h"
@@ -18,6 +18,7 @@
 #include "synthesis/near.h"
 #include "synthesis/problem.h"
 #include "synthesis/regions.h"
+#include "synthesis/spots.h"
 #include "synthesis/surface.h"
 #include "synthesis/traits.h"
 
@@ -34,6 +35,8 @@
 /* The light's drift is that between sources of the hole's own scales and a little more. With the
  * sky in it a road gets blue. */
 #define SCALES_BESIDE 1.3
+/* The drift is measured again where such a part of the sources was something else. */
+#define MUCH_TAKEN .05
 /* Bytes span this many standard deviations to each side. */
 #define DEVIATIONS 4.f
 
@@ -225,6 +228,21 @@ static recede_status compose(rc_context *context, const rc_descent *e, const rc_
                     e->params->engine_join ? &rc_effort_of(e)->join : NULL, residual);
 }
 
+/* Takes away what looks unlike all that is beside the hole. A drift was measured on that, too: with
+ * a sky in it sand gets grey. So it is measured once more. None is now that was not before: of dark
+ * boards alone, light ones taken away, the light seems to drift. */
+static recede_status keep_alike(rc_context *context, const rc_problem *problem, const rc_band *band,
+                                rc_tone *tone, rc_image *filled, rc_block *pyramid, rc_descent *e) {
+  double taken;
+  RC_TRY(rc_keep_alike(context, band, e->images, e->flags, e->level_count, &taken));
+  if (taken < MUCH_TAKEN || !rc_tone_drifts(tone)) return RECEDE_OK;
+  RC_TRY(rc_tone_apply(context, tone, &problem->flags, RC_KNOWN, 1, filled));
+  rc_tone_fit(filled, &problem->flags, band, e->params->engine_tone, tone);
+  RC_TRY(rc_tone_apply(context, tone, &problem->flags, RC_KNOWN, -1, filled));
+  rc_release(context, pyramid);
+  return build_pyramid(context, problem, filled, e);
+}
+
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                             const recede_params *params, rc_image *filled) {
   rc_descent e = {.params = params, .kernels = rc_kernels_select(context->host.kernel)};
@@ -240,16 +258,20 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   rc_tone_fit(filled, &problem->flags, &band, params->engine_tone, &tone);
   RC_TRY(rc_tone_apply(context, &tone, &problem->flags, RC_KNOWN, -1, filled));
   RC_TRY(rc_stage(context, "pyramid", .07, .1));
+  rc_block *pyramid = rc_mark(context);
   RC_TRY(build_pyramid(context, problem, filled, &e));
   RC_TRY(choose_surface(context, problem, &e, &raised));
   if (params->engine_alike && !problem->synthesis)
-    RC_TRY(rc_keep_alike(context, &band, e.images, e.flags, e.level_count));
+    RC_TRY(keep_alike(context, problem, &band, &tone, filled, pyramid, &e));
   e.gain = byte_gain(filled, &problem->flags);
   /* Again, for it is the texture's that counts; what is alike may be too little to tell. */
   RC_TRY(choose_surface(context, problem, &e, &raised));
   e.chart = chart_of(problem, raised);
   RC_TRY(find_lines(context, &e));
   RC_TRY(find_regions(context, &e));
+  /* After the lines: a road's own dashes tell whether what crosses the hole repeats. */
+  if (params->engine_spots && !problem->synthesis)
+    RC_TRY(rc_drop_spots(context, &band, e.images, e.flags, e.level_count));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   context->report.surface = e.chart.raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;

@@ -106,6 +106,34 @@ static void walls_stay_out(void) {
   g_assert_cmpfloat(wall_in_hole("orientation=frontal quality=draft", true), >, .5);
 }
 
+/* Fine sand, and people on it, 4 px wide and 12 high. */
+static picture people_on_sand(void) {
+  static const int people[][2] = {{20, 30}, {32, 34}, {282, 40}, {292, 196}, {40, 200}, {250, 20}};
+  picture p = picture_new(320, 240, 1, RECEDE_U8);
+  for (int y = 0; y < 240; y++)
+    for (int x = 0; x < 320; x++)
+      picture_set(&p, x, y, 0,
+                  (float)(.6 + .04 * noise_at(x / 6, y / 2, 6) + .03 * noise_at(x, y, 7)));
+  for (guint i = 0; i < G_N_ELEMENTS(people); i++) {
+    area at = {people[i][0], people[i][1], people[i][0] + 4, people[i][1] + 12};
+    picture_fill(&p, at, .1f);
+  }
+  return p;
+}
+
+static bool is_person(const picture *p, int x, int y) { return picture_get(p, x, y, 0) < .3f; }
+
+/* Whole copies of sand with a person in it fit sand as well as those without. */
+static void people_stay_where_they_are(void) {
+  const area hole = {90, 60, 230, 180};
+  double with = part_of(people_on_sand, hole, 0, "orientation=frontal", 0, is_person);
+  double without =
+      part_of(people_on_sand, hole, 0, "orientation=frontal engine-spots=0", 0, is_person);
+  g_test_message("%.5f of the hole is a person, without the stage %.5f", with, without);
+  g_assert_cmpfloat(with, ==, 0);
+  g_assert_cmpfloat(without, >, 0);
+}
+
 /* A green road from row 114 on, a plain strip between it and a hole as wide as the picture, and
  * sky. */
 static picture road_far_off(void) {
@@ -191,6 +219,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/bland/near", near_goes_on);
   g_test_add_func("/bland/moat", moat_is_crossed);
   g_test_add_func("/bland/walls", walls_stay_out);
+  g_test_add_func("/bland/people", people_stay_where_they_are);
   g_test_add_func("/bland/far", something_stays);
   return g_test_run();
 }
