@@ -115,17 +115,19 @@ static rc_rails turned(rc_rails rails, float tangent) {
   return (rc_rails){.a = a / length, .b = b / length};
 }
 
-/* Turned to where moves along change least. */
+/* Turned to where moves along change least: by so much or, where that leads out of what is known,
+ * half as far and so on. */
 static rc_rails sharpened(const view *v, rc_rails rails, float reach_px, float turn) {
   static const float parts[] = {1, -1, .5f, -.5f};
   rc_rails best = rails;
   double least = INFINITY;
-  for (int n = -TURNS; n <= TURNS; n++) {
-    rc_rails r = turned(rails, turn * (float)n);
-    change c = {0, 0};
-    for (int k = 0; k < 4; k++) look(v, parts[k] * reach_px * r.a, parts[k] * reach_px * r.b, &c);
-    if (mean_of(&c) < least) least = mean_of(&c), best = r;
-  }
+  for (; least == INFINITY && reach_px >= FAR_RUN_PX; reach_px /= 2)
+    for (int n = -TURNS; n <= TURNS; n++) {
+      rc_rails r = turned(rails, turn * (float)n);
+      change c = {0, 0};
+      for (int k = 0; k < 4; k++) look(v, parts[k] * reach_px * r.a, parts[k] * reach_px * r.b, &c);
+      if (mean_of(&c) < least) least = mean_of(&c), best = r;
+    }
   return best;
 }
 

@@ -12,6 +12,9 @@
  * while one of some people may stand beside it. */
 #define TIMES_BESIDE 2.f
 #define TOUCHING_PX 4
+/* Where nothing there differs by so much of white, as beside a plain wall, this counts: else any
+ * grain would stand out. */
+#define LEAST_SEEN .03f
 /* What a spot's place is marked by; those around it, into which its edge fades, by 1. */
 #define SPOT 2
 
@@ -31,9 +34,9 @@ static float stands_out(const rc_places *p, int x, int y, const rc_looks *looks)
   return sum;
 }
 
-/* INFINITY: nothing near the hole says. */
+/* INFINITY: there is nothing near the hole. */
 static float most_near_hole(const rc_places *p) {
-  float most = 0;
+  float most = -1;
   for (int y = 0; y < p->flags->height; y++)
     for (int x = 0; x < p->flags->width; x++) {
       uint8_t away = p->beside[y * p->flags->width + x];
@@ -41,7 +44,8 @@ static float most_near_hole(const rc_places *p) {
       if (away && away <= TOUCHING_PX && rc_look_at(p, x, y, &here))
         most = fmaxf(most, stands_out(p, x, y, &here));
     }
-  return most > 0 ? TIMES_BESIDE * TIMES_BESIDE * most : INFINITY;
+  if (most < 0) return INFINITY;
+  return TIMES_BESIDE * TIMES_BESIDE * fmaxf(most, LEAST_SEEN * LEAST_SEEN);
 }
 
 static void find_row(void *user, int row, int thread) {
@@ -56,15 +60,19 @@ static void find_row(void *user, int row, int thread) {
   }
 }
 
-static void grow(const rc_places *p) {
+/* False: there are none. */
+static bool grow(const rc_places *p) {
+  bool any = false;
   for (int y = 0; y < p->rows; y++)
     for (int x = 0; x < p->columns; x++) {
       if (p->unlike[y * p->columns + x] != SPOT) continue;
+      any = true;
       for (int j = y - 1; j <= y + 1; j++)
         for (int i = x - 1; i <= x + 1; i++)
           if (rc_inside(p->columns, p->rows, i, j) && !p->unlike[j * p->columns + i])
             p->unlike[j * p->columns + i] = 1;
     }
+  return any;
 }
 
 recede_status rc_drop_spots(rc_context *context, const rc_band *band, const rc_image *images,
@@ -73,11 +81,12 @@ recede_status rc_drop_spots(rc_context *context, const rc_band *band, const rc_i
   double taken;
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_places_new(context, images, flags, levels, &f.places));
-  f.most = most_near_hole(&f.places);
-  RC_TRY(rc_poll(context));
-  RC_TRY(rc_parallel(context, f.places.rows, find_row, &f));
-  grow(&f.places);
-  RC_TRY(rc_places_take(context, &f.places, band, flags, &taken));
+  if (f.places.step == 1) { /* else the hole is thin: patches see across, and no place is a spot */
+    f.most = most_near_hole(&f.places);
+    RC_TRY(rc_poll(context));
+    RC_TRY(rc_parallel(context, f.places.rows, find_row, &f));
+    if (grow(&f.places)) RC_TRY(rc_places_take(context, &f.places, band, flags, &taken));
+  }
   rc_release(context, mark);
   return RECEDE_OK;
 }
