@@ -6,7 +6,6 @@
 
 #include "base/eigen.h"
 #include "base/memory.h"
-#include "synthesis/looks.h"
 
 /* A pixel's looks are those of the square around it; then it is what most of that square is. */
 #define HALF_PX 2
@@ -22,15 +21,14 @@
 /* What has no noise at all must not decide: this part of the mean variance is added to all. */
 #define LEAST_NOISE 1e-3
 
-typedef struct grouping {
+typedef struct finder {
   const rc_around *around;
   int beside_px;
-  rc_looks *looks;
-  uint8_t *seen; /* pixels that have looks */
-} grouping;
+  rc_groups *groups;
+} finder;
 
-static bool is_beside(const grouping *g, size_t at) {
-  return g->seen[at] && g->around->from_hole[at] <= g->beside_px;
+static bool is_beside(const finder *f, size_t at) {
+  return f->groups->seen[at] && f->around->from_hole[at] <= f->beside_px;
 }
 
 static void add_outer(double matrix[RC_LOOKS * RC_LOOKS], const double v[RC_LOOKS]) {
@@ -39,12 +37,12 @@ static void add_outer(double matrix[RC_LOOKS * RC_LOOKS], const double v[RC_LOOK
 }
 
 /* Means beside the hole; false: hardly anything is known there. */
-static bool means(const grouping *g, double mean[RC_LOOKS]) {
+static bool means(const finder *f, double mean[RC_LOOKS]) {
   double count = 0;
   memset(mean, 0, RC_LOOKS * sizeof *mean);
-  for (size_t i = 0; i < g->around->pixels; i++) {
-    if (!is_beside(g, i)) continue;
-    for (int k = 0; k < RC_LOOKS; k++) mean[k] += (double)g->looks[i].value[k];
+  for (size_t i = 0; i < f->around->pixels; i++) {
+    if (!is_beside(f, i)) continue;
+    for (int k = 0; k < RC_LOOKS; k++) mean[k] += (double)f->groups->looks[i].value[k];
     count++;
   }
   for (int k = 0; k < RC_LOOKS; k++) mean[k] /= fmax(count, 1);
@@ -52,22 +50,22 @@ static bool means(const grouping *g, double mean[RC_LOOKS]) {
 }
 
 /* Covariances of the looks beside the hole, and of what squares next to each other differ by. */
-static void covariances(const grouping *g, const double mean[RC_LOOKS],
+static void covariances(const finder *f, const double mean[RC_LOOKS],
                         double all[RC_LOOKS * RC_LOOKS], double near[RC_LOOKS * RC_LOOKS]) {
-  size_t width = (size_t)g->around->width, step[2] = {SIDE_PX, SIDE_PX * width};
+  size_t width = (size_t)f->around->width, step[2] = {SIDE_PX, SIDE_PX * width};
   double count = 0, pairs = 0, trace = 0, v[RC_LOOKS];
   memset(all, 0, RC_LOOKS * RC_LOOKS * sizeof *all);
   memset(near, 0, RC_LOOKS * RC_LOOKS * sizeof *near);
-  for (size_t i = 0; i < g->around->pixels; i++) {
-    if (!is_beside(g, i)) continue;
-    for (int k = 0; k < RC_LOOKS; k++) v[k] = (double)g->looks[i].value[k] - mean[k];
+  for (size_t i = 0; i < f->around->pixels; i++) {
+    if (!is_beside(f, i)) continue;
+    for (int k = 0; k < RC_LOOKS; k++) v[k] = (double)f->groups->looks[i].value[k] - mean[k];
     add_outer(all, v);
     count++;
     for (int n = 0; n < 2; n++) {
-      bool inside = n ? i + step[n] < g->around->pixels : i % width + SIDE_PX < width;
-      if (!inside || !is_beside(g, i + step[n])) continue;
+      bool inside = n ? i + step[n] < f->around->pixels : i % width + SIDE_PX < width;
+      if (!inside || !is_beside(f, i + step[n])) continue;
       for (int k = 0; k < RC_LOOKS; k++)
-        v[k] = (double)(g->looks[i + step[n]].value[k] - g->looks[i].value[k]);
+        v[k] = (double)(f->groups->looks[i + step[n]].value[k] - f->groups->looks[i].value[k]);
       add_outer(near, v);
       pairs += 2; /* a difference has the variance of both */
     }
@@ -108,9 +106,9 @@ static recede_status find_axes(rc_context *context, const double all[RC_LOOKS * 
   return RECEDE_OK;
 }
 
-static float along(const rc_looks *looks, const double axes[RC_LOOKS * RC_LOOKS], int axis) {
+static float along(const rc_looks *looks, const double axis[RC_LOOKS]) {
   double sum = 0;
-  for (int k = 0; k < RC_LOOKS; k++) sum += axes[k * RC_LOOKS + axis] * (double)looks->value[k];
+  for (int k = 0; k < RC_LOOKS; k++) sum += axis[k] * (double)looks->value[k];
   return (float)sum;
 }
 
@@ -160,59 +158,66 @@ static recede_status take_majority(rc_context *context, const rc_around *around,
   return rc_poll(context);
 }
 
-static recede_status look_around(rc_context *context, grouping *g) {
-  const rc_around *around = g->around;
-  RC_TRY(RC_NEW(context, around->pixels, &g->looks));
-  RC_TRY(RC_NEW(context, around->pixels, &g->seen));
+static recede_status look_around(rc_context *context, const rc_around *around, rc_groups *groups) {
+  RC_TRY(RC_NEW(context, around->pixels, &groups->looks));
+  RC_TRY(RC_NEW(context, around->pixels, &groups->seen));
   for (size_t i = 0; i < around->pixels; i++) {
     int x = around->box.x0 + (int)(i % (size_t)around->width);
     int y = around->box.y0 + (int)(i / (size_t)around->width);
-    g->seen[i] = *rc_flag(around->flags, x, y) & RC_KNOWN &&
-                 rc_look(around->image, around->flags, x, y, HALF_PX, &g->looks[i]);
+    groups->seen[i] = *rc_flag(around->flags, x, y) & RC_KNOWN &&
+                      rc_look(around->image, around->flags, x, y, HALF_PX, &groups->looks[i]);
   }
   return rc_poll(context);
 }
 
-/* The axis that tells two groups apart, where, and how well; -1: none does. */
-static recede_status choose_axis(rc_context *context, const grouping *g,
-                                 const double axes[RC_LOOKS * RC_LOOKS],
-                                 const double ratio[RC_LOOKS], int *chosen, float *at,
-                                 double *most) {
+/* Adds a way behind those that explain more. */
+static void add_way(rc_groups *groups, const rc_way *way) {
+  int at = groups->count++;
+  for (; at > 0 && groups->ways[at - 1].explained < way->explained; at--)
+    groups->ways[at] = groups->ways[at - 1];
+  groups->ways[at] = *way;
+}
+
+/* Asks each axis on which looks vary enough, whether it tells two groups apart. */
+static recede_status ask_axes(rc_context *context, const finder *f,
+                              const double axes[RC_LOOKS * RC_LOOKS],
+                              const double ratio[RC_LOOKS]) {
   float *value;
-  *chosen = -1, *most = 0;
-  RC_TRY(RC_NEW(context, g->around->pixels, &value));
-  for (int axis = 0; axis < RC_LOOKS && ratio[axis] >= LEAST_RATIO; axis++) {
-    double explained;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, f->around->pixels, &value));
+  for (int k = 0; k < RC_LOOKS && ratio[k] >= LEAST_RATIO; k++) {
+    rc_way way;
     size_t count = 0;
-    for (size_t i = 0; i < g->around->pixels; i++)
-      if (is_beside(g, i)) value[count++] = along(&g->looks[i], axes, axis);
+    for (int i = 0; i < RC_LOOKS; i++) way.axis[i] = axes[i * RC_LOOKS + k];
+    for (size_t i = 0; i < f->around->pixels; i++)
+      if (is_beside(f, i)) value[count++] = along(&f->groups->looks[i], way.axis);
     qsort(value, count, sizeof *value, by_value);
-    float here = split_at(value, count, &explained);
+    way.at = split_at(value, count, &way.explained);
+    bool clear = ratio[k] >= CLEAR_RATIO;
+    if (way.explained >= (clear ? LEAST_EXPLAINED_WHERE_CLEAR : LEAST_EXPLAINED))
+      add_way(f->groups, &way);
     RC_TRY(rc_poll(context));
-    double least = ratio[axis] >= CLEAR_RATIO ? LEAST_EXPLAINED_WHERE_CLEAR : LEAST_EXPLAINED;
-    if (explained < least || explained < *most) continue;
-    *chosen = axis, *at = here, *most = explained;
   }
+  rc_release(context, mark);
   return RECEDE_OK;
 }
 
-recede_status rc_two_groups(rc_context *context, const rc_around *around, int beside_px,
-                            int8_t *label, double *explained) {
+recede_status rc_groups_find(rc_context *context, const rc_around *around, int beside_px,
+                             rc_groups *groups) {
   double mean[RC_LOOKS], all[RC_LOOKS * RC_LOOKS], near[RC_LOOKS * RC_LOOKS];
   double axes[RC_LOOKS * RC_LOOKS], ratio[RC_LOOKS];
-  grouping g = {around, beside_px, NULL, NULL};
-  int axis = -1;
-  float at = 0;
-  rc_block *mark = rc_mark(context);
-  *explained = 0;
-  RC_TRY(look_around(context, &g));
-  if (means(&g, mean)) {
-    covariances(&g, mean, all, near);
-    RC_TRY(find_axes(context, all, near, axes, ratio));
-    RC_TRY(choose_axis(context, &g, axes, ratio, &axis, &at, explained));
-  }
-  for (size_t i = 0; axis >= 0 && i < around->pixels; i++)
-    label[i] = !g.seen[i] ? 0 : along(&g.looks[i], axes, axis) > at ? 1 : -1;
-  rc_release(context, mark);
-  return axis >= 0 ? take_majority(context, around, label) : RECEDE_OK;
+  finder f = {around, beside_px, groups};
+  groups->count = 0;
+  RC_TRY(look_around(context, around, groups));
+  if (!means(&f, mean)) return RECEDE_OK;
+  covariances(&f, mean, all, near);
+  RC_TRY(find_axes(context, all, near, axes, ratio));
+  return ask_axes(context, &f, axes, ratio);
+}
+
+recede_status rc_groups_label(rc_context *context, const rc_around *around, const rc_groups *groups,
+                              const rc_way *way, int8_t *label) {
+  for (size_t i = 0; i < around->pixels; i++)
+    label[i] = !groups->seen[i] ? 0 : along(&groups->looks[i], way->axis) > way->at ? 1 : -1;
+  return take_majority(context, around, label);
 }

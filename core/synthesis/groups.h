@@ -4,6 +4,7 @@
 
 #include "base/context.h"
 #include "image/image.h"
+#include "synthesis/looks.h"
 
 /* Part of a level around a hole; arrays hold its pixels row by row. */
 typedef struct rc_around {
@@ -15,10 +16,25 @@ typedef struct rc_around {
   uint8_t *from_hole; /* px; 0: in the hole */
 } rc_around;
 
-/* Labels known pixels by what they look like, -1 or 1, others 0. beside_px: pixels so far from the
- * hole say what two things there are. explained: how much of how their looks vary, along the axis
- * that tells them apart, 0..1; 0: there are no two. */
-recede_status rc_two_groups(rc_context *context, const rc_around *around, int beside_px,
-                            int8_t *label, double *explained);
+/* A way to tell two things apart: by how far their looks lie along an axis. */
+typedef struct rc_way {
+  double axis[RC_LOOKS];
+  float at;         /* where one ends and the other begins */
+  double explained; /* how much of how looks vary along the axis, 0..1 */
+} rc_way;
+
+typedef struct rc_groups {
+  rc_looks *looks; /* of the pixels around the hole */
+  uint8_t *seen;   /* pixels that have looks */
+  rc_way ways[RC_LOOKS];
+  int count; /* 0: there are no two things. The way that explains most is the first. */
+} rc_groups;
+
+/* beside_px: pixels so far from the hole say what two things there are. */
+recede_status rc_groups_find(rc_context *context, const rc_around *around, int beside_px,
+                             rc_groups *groups);
+/* Labels known pixels by what they look like, -1 or 1, others 0. */
+recede_status rc_groups_label(rc_context *context, const rc_around *around, const rc_groups *groups,
+                              const rc_way *way, int8_t *label);
 
 #endif

@@ -31,6 +31,8 @@
 /* Whether lines repeat is asked so near to the hole, in its longer sides: from one rail of a pier
  * to the other its texture seems to. What points are compared with may lie anywhere. */
 #define NEAR_HOLE .5f
+/* Lines leave the picture where they meet its end at 27 degrees or more. */
+#define LEAST_LEAVING .5f
 /* Where no line crosses the hole all directions are tried, 4 degrees apart. A texture runs along
  * the best if, moved by so many px of the coarsest level near the hole, it changes by less than
  * these parts of what it does moved across by up to twice as far: boards .03 to .14 and .06 to .35,
@@ -220,6 +222,23 @@ static bool scan(const view *v, rc_rails *best) {
          change_along(v, *best, FAR_RUN_PX) < MOST_ALONG_FAR * most_across;
 }
 
+/* Whether what runs along the rails leads out of the picture where the hole does: no line crosses a
+ * hole there. */
+static bool leaves_the_picture(const rc_chart *chart, const rc_mask *flags, rc_rails r) {
+  rc_chart flat = rc_chart_flat(*chart);
+  for (int y = 0; y < flags->height; y++)
+    for (int x = 0; x < flags->width; x++) {
+      bool at_side = x == 0 || x == flags->width - 1, at_top = y == 0 || y == flags->height - 1;
+      if (!(at_side || at_top) || !(*rc_flag(flags, x, y) & RC_TARGET)) continue;
+      float px = (float)x - chart->x0, py = (float)y - chart->y0;
+      rc_place next = rc_copy_place(&flat, (rc_copy){r.a, r.b, 0}, px, py);
+      float dx = fabsf(next.x - px), dy = fabsf(next.y - py);
+      if (next.beyond) continue;
+      if ((at_side && dx > LEAST_LEAVING * dy) || (at_top && dy > LEAST_LEAVING * dx)) return true;
+    }
+  return false;
+}
+
 /* So far joints must stay where they are: the longest line, or the hole. */
 static float how_far(const rc_crossing *lines, int count, const rc_mask *flags) {
   float most = 0;
@@ -242,7 +261,7 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
   RC_TRY(RC_NEW(context, 1, &near));
   set_view(&images[coarse], flags, here, all_of(flags), NULL, all);
   set_view(&images[coarse], flags, here, near_hole(flags), NULL, near);
-  bool told = *count || scan(near, &r);
+  bool told = *count || (scan(near, &r) && leaves_the_picture(&here, flags, r));
   if (*count) r = median_of(chart, lines, *count);
   if (told && runs(all, r)) {
     float reach_px = how_far(lines, *count, &masks[0]);

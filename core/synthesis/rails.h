@@ -32,10 +32,10 @@ rc_copy rc_copy_of_move(const rc_chart *chart, float x, float y, float a, float 
 rc_copy rc_copy_on_rails(const rc_rails *rails, const rc_chart *chart, float tolerance, float x,
                          float y, float to_x, float to_y);
 
-/* From the lines that cross the hole or, where none does, for instance because it reaches the
- * picture's end, from how the texture beside it changes in all directions; sharpened by how alike
- * the texture is along them. *count becomes 0 where, beside the hole, it repeats. images and masks:
- * the pyramid's levels, finest first; chart: of the finest. */
+/* From the lines that cross the hole or, where none does and it reaches the picture's end, from how
+ * the texture beside it changes in all directions; sharpened by how alike the texture is along
+ * them. *count becomes 0 where, beside the hole, it repeats. images and masks: the pyramid's
+ * levels, finest first; chart: of the finest. */
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                             int levels, const rc_chart *chart, const rc_crossing *lines, int *count,
                             rc_rails *rails);
