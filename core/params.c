@@ -111,6 +111,7 @@ static const recede_param_info table[] = {
     STAGE("engine-texture", engine_texture,
           "coarse levels compare the finer detail too, by strength and direction"),
     STAGE("engine-whole", engine_whole, "few whole copies start what lines cross (boards always)"),
+    STAGE("engine-cuts", engine_cuts, "lead seams where the copies on both sides look alike"),
     STAGE("engine-coherence", engine_coherence, "a price on neighbours with other displacements"),
     STAGE("engine-usage", engine_usage, "a price on taking the same source often"),
     STAGE("engine-confidence", engine_confidence, "pixels count less the deeper in the hole"),

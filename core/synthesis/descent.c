@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "synthesis/coarsest.h"
+#include "synthesis/cuts.h"
 #include "synthesis/gauge.h"
 #include "synthesis/lock.h"
 #include "synthesis/rest.h"
@@ -13,8 +14,26 @@
 /* Each px deeper in the hole counts 1.3 times less; 1.15 is too trusting. */
 #define CONFIDENCE_FALLOFF 1.3f
 
+/* A cut through so many pixels takes .1 s. */
+#define LEAST_CUT_LEVEL 1
+#define MOST_CUT 12000
+
 /* The finest level that is searched: what it settles on is composed. */
 static int last_searched(const rc_descent *e) { return rc_iterations_at(e, 0) ? 0 : 1; }
+
+static int targets_of(const rc_mask *flags) {
+  int count = 0;
+  for (size_t i = 0; i < (size_t)flags->width * (size_t)flags->height; i++)
+    count += (flags->data[i] & RC_TARGET) != 0;
+  return count;
+}
+
+/* The finest level where seams are led by cuts; finer ones refine what lies beside them. */
+static int cut_level(const rc_descent *e) {
+  int exponent = LEAST_CUT_LEVEL;
+  while (exponent + 1 < e->level_count && targets_of(&e->flags[exponent]) > MOST_CUT) exponent++;
+  return exponent;
+}
 
 static recede_status search_level(rc_context *context, rc_descent *e, int exponent,
                                   rc_level *level) {
@@ -27,6 +46,8 @@ static recede_status search_level(rc_context *context, rc_descent *e, int expone
     if (e->on_rails) RC_TRY(rc_boards_mark(context, &e->rails, exponent, level));
     RC_TRY(rc_iterate(context, e, exponent, 0, 0, p.total, &p, level, &scratch));
   }
+  if (exponent == cut_level(e) && e->params->engine_cuts && !e->on_rails)
+    RC_TRY(rc_cut_copies(context, e->kernels, level));
   return exponent == last_searched(e) ? rc_settle(context, e, level, &scratch) : RECEDE_OK;
 }
 

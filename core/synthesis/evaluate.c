@@ -120,6 +120,20 @@ static bool set_footprint(const rc_level *level, const rc_chart *chart, rc_copy 
   return true;
 }
 
+static float price_of_sides(const rc_level *level, const rc_query *query, const rc_place *place) {
+  if (!rc_has_sides(&level->sides)) return 0.f;
+  float off = rc_side(&level->sides, &level->chart, place->x, place->y) - query->side;
+  return RC_PRICE_SIDE * level->variance * off * off;
+}
+
+float rc_query_price(const rc_level *level, const rc_query *query, rc_copy copy,
+                     const rc_place *place) {
+  return rc_query_allows(level, query, copy, place)
+             ? rc_place_price(level->variance, place, query->low, query->high) +
+                   price_of_sides(level, query, place)
+             : RC_NO_COST;
+}
+
 bool rc_query_allows(const rc_level *level, const rc_query *query, rc_copy copy,
                      const rc_place *place) {
   rc_footprint footprint;
@@ -131,10 +145,7 @@ float rc_query_cost(const rc_level *level, const rc_kernels *kernels, rc_query *
                     const rc_place *place, float limit) {
   rc_footprint footprint;
   float price = rc_place_price(level->variance, place, query->low, query->high);
-  if (price < limit && rc_has_sides(&level->sides)) {
-    float off = rc_side(&level->sides, &level->chart, place->x, place->y) - query->side;
-    price += RC_PRICE_SIDE * level->variance * off * off;
-  }
+  if (price < limit) price += price_of_sides(level, query, place);
   if (price >= limit || !set_footprint(level, &level->chart, copy, place, &footprint))
     return RC_NO_COST;
   if (!query->gathered) gather(level, query);

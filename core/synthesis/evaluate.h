@@ -37,7 +37,10 @@ void rc_query_set(const rc_level *level, int x, int y, rc_query *query);
  * wrong scale, or its footprint is not wholly source). */
 float rc_query_cost(const rc_level *level, const rc_kernels *kernels, rc_query *query, rc_copy copy,
                     const rc_place *place, float limit);
-/* Whether the copy has a cost at all; reads no pixels. */
+/* The part of it that needs no pixels: what the place costs. */
+float rc_query_price(const rc_level *level, const rc_query *query, rc_copy copy,
+                     const rc_place *place);
+/* Whether the copy has a cost at all. */
 bool rc_query_allows(const rc_level *level, const rc_query *query, rc_copy copy,
                      const rc_place *place);
 /* Where a copy takes the query's pixel from. */

@@ -1,0 +1,250 @@
+/* Graph cuts by expansion (Boykov, Veksler and Zabih 2001): in turn each of the largest copies may
+ * take any pixel where that makes the sum cheaper of what copies cost at their pixels and of what
+ * they differ by along the seams. */
+#include "synthesis/cuts.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "synthesis/evaluate.h"
+#include "synthesis/mincut.h"
+
+/* Copies that may expand, the largest, and how often each that takes anything. */
+#define MOST_COPIES 16
+#define LEAST_PIXELS 4
+#define ROUNDS 2
+/* Beside what is known a copy's distance, in variances, counts so much times the part of the patch
+ * that is known; deeper in the hole only its place has a price, for any stone will do there. */
+#define OF_KNOWN 4.f
+/* A seam costs what the copies differ by at both pixels, in deviations, and so much in itself. */
+#define OF_SEAM .02f
+/* Capacities are integers, so many to a unit, and none may count more than: */
+#define UNIT 1000.f
+#define MOST (1 << 26)
+
+typedef struct colour {
+  float value[RC_COMPONENTS];
+} colour;
+
+typedef struct cuts {
+  const rc_kernels *kernels;
+  rc_level *level;
+  rc_grid grid; /* of the box and a frame of 1 px */
+  /* Of the grid's pixels: */
+  uint8_t *part;  /* those that take part */
+  float *known;   /* what a distance counts */
+  float *cost;    /* of the own copy */
+  float *cost_of; /* of the copy that expands */
+  colour *own;    /* what the own copy has here and to the left, right, above and below */
+  colour *other;  /* what the one that expands has */
+  uint8_t *taken;
+  float per_deviation;
+} cuts;
+
+static const int step_x[4] = {-1, 1, 0, 0}, step_y[4] = {0, 0, -1, 1};
+
+static size_t grid_at(const cuts *c, int x, int y) {
+  return (size_t)(y - c->level->box.y0 + 1) * (size_t)c->grid.width +
+         (size_t)(x - c->level->box.x0 + 1);
+}
+
+/* What a copy has at (x, y), between the pixels. */
+static colour sample(const rc_level *level, rc_copy copy, int x, int y) {
+  colour c = {{0, 0, 0, 0}};
+  rc_place place = rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
+  if (place.beyond) return c;
+  float sx = fminf(fmaxf(place.x + level->chart.x0, 0.f), (float)(level->width - 1));
+  float sy = fminf(fmaxf(place.y + level->chart.y0, 0.f), (float)(level->height - 1));
+  int ix = (int)sx, iy = (int)sy;
+  int right = ix + 1 < level->width, below = iy + 1 < level->height ? level->width : 0;
+  const uint32_t *at = level->pixels + (size_t)iy * (size_t)level->width + (size_t)ix;
+  float fx = sx - (float)ix, fy = sy - (float)iy;
+  for (int k = 0; k < RC_COMPONENTS; k++) {
+    float a = (float)(at[0] >> 8 * k & 255), b = (float)(at[right] >> 8 * k & 255);
+    float d = (float)(at[below] >> 8 * k & 255), e = (float)(at[below + right] >> 8 * k & 255);
+    c.value[k] = (a + (b - a) * fx) * (1 - fy) + (d + (e - d) * fx) * fy;
+  }
+  return c;
+}
+
+static float apart(const colour *p, const colour *q) {
+  float sum = 0;
+  for (int k = 0; k < RC_COMPONENTS; k++)
+    sum += (p->value[k] - q->value[k]) * (p->value[k] - q->value[k]);
+  return sqrtf(sum);
+}
+
+static int32_t fixed(float value) {
+  return value < (float)MOST / UNIT ? rc_floor(value * UNIT + .5f) : MOST;
+}
+
+/* Of two copies that differ by so much at the two pixels of a seam; 0: it is none. */
+static int32_t seam(const cuts *c, float here, float there) {
+  if (here + there <= 0.f) return 0;
+  return fixed(OF_SEAM + (here + there) * c->per_deviation);
+}
+
+/* How much of the patch is known. */
+static float known_part(const rc_level *level, int x, int y) {
+  int known = 0;
+  for (int j = y - RC_PATCH_RADIUS; j <= y + RC_PATCH_RADIUS; j++)
+    for (int i = x - RC_PATCH_RADIUS; i <= x + RC_PATCH_RADIUS; i++)
+      known += rc_inside(level->width, level->height, i, j) && !rc_level_is_target(level, i, j);
+  return (float)known / RC_PATCH_PIXELS;
+}
+
+/* In variances; RC_NO_COST: it is not allowed. */
+static float cost_at(const cuts *c, rc_query *query, rc_copy copy, int x, int y) {
+  float known = c->known[grid_at(c, x, y)], variance = c->level->variance;
+  rc_query_set(c->level, x, y, query);
+  rc_place place = rc_query_place(c->level, query, copy);
+  if (known > 0.f) {
+    float cost = rc_query_cost(c->level, c->kernels, query, copy, &place, RC_NO_COST);
+    return cost < RC_NO_COST ? known * cost / variance : cost;
+  }
+  float price = rc_query_price(c->level, query, copy, &place);
+  return price < RC_NO_COST ? price / variance : price;
+}
+
+static void look_at_own(cuts *c, int x, int y) {
+  size_t at = grid_at(c, x, y);
+  rc_copy copy = c->level->field[rc_level_at(c->level, x, y)];
+  c->own[5 * at] = sample(c->level, copy, x, y);
+  for (int k = 0; k < 4; k++)
+    c->own[5 * at + 1 + (size_t)k] = sample(c->level, copy, x + step_x[k], y + step_y[k]);
+}
+
+static recede_status prepare(rc_context *context, cuts *c) {
+  rc_level *level = c->level;
+  size_t count = (size_t)(level->box_w + 2) * (size_t)(level->box_h + 2);
+  rc_query query;
+  RC_TRY(rc_grid_new(context, level->box_w + 2, level->box_h + 2, &c->grid));
+  RC_TRY(RC_NEW_ZERO(context, count, &c->part));
+  RC_TRY(RC_NEW(context, count, &c->known));
+  RC_TRY(RC_NEW(context, count, &c->cost));
+  RC_TRY(RC_NEW(context, count, &c->cost_of));
+  RC_TRY(RC_NEW(context, 5 * count, &c->own));
+  RC_TRY(RC_NEW(context, count, &c->other));
+  RC_TRY(RC_NEW(context, count, &c->taken));
+  c->per_deviation = 1.f / sqrtf(level->variance);
+  rc_query_init(&query);
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      size_t at = rc_level_at(level, x, y);
+      if (!rc_level_is_target(level, x, y) || isnan(level->field[at].a)) continue;
+      c->part[grid_at(c, x, y)] = 1;
+      c->known[grid_at(c, x, y)] = OF_KNOWN * known_part(level, x, y);
+      c->cost[grid_at(c, x, y)] = cost_at(c, &query, level->field[at], x, y);
+      look_at_own(c, x, y);
+    }
+  return rc_poll(context);
+}
+
+/* Adds what the seams between a pixel and its neighbour, right or below, ask for. */
+static void add_edge(const cuts *c, size_t at, size_t next, int direction) {
+  const colour *p = &c->own[5 * at], *q = &c->own[5 * next];
+  int back = direction ^ 1;
+  int32_t both = seam(c, apart(&p[0], &q[1 + back]), apart(&p[1 + direction], &q[0]));
+  int32_t first = seam(c, apart(&p[0], &c->other[at]), apart(&p[1 + direction], &c->other[next]));
+  int32_t second = seam(c, apart(&q[1 + back], &c->other[at]), apart(&q[0], &c->other[next]));
+  /* first: the own copy here and the new one there; second: the other way round. */
+  c->grid.end[at] += second - both;
+  c->grid.end[next] -= second;
+  int32_t across = first + second - both;
+  c->grid.beside[direction][at] = across > 0 ? across : 0;
+}
+
+/* Lets a copy take what it makes cheaper. */
+static recede_status expand(rc_context *context, cuts *c, rc_copy copy, bool *changed) {
+  rc_level *level = c->level;
+  rc_grid *g = &c->grid;
+  size_t count = (size_t)g->width * (size_t)g->height;
+  rc_query query;
+  rc_query_init(&query);
+  memset(g->end, 0, count * sizeof *g->end);
+  for (int k = 0; k < 4; k++) memset(g->beside[k], 0, count * sizeof *g->beside[k]);
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      size_t at = grid_at(c, x, y);
+      if (!c->part[at]) continue;
+      size_t own = rc_level_at(level, x, y);
+      bool locked = level->locked && level->locked[own];
+      c->cost_of[at] = locked ? RC_NO_COST : cost_at(c, &query, copy, x, y);
+      c->other[at] = sample(level, copy, x, y);
+      g->end[at] += fixed(c->cost_of[at]) - fixed(c->cost[at]);
+    }
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      size_t at = grid_at(c, x, y), right = at + 1, below = at + (size_t)g->width;
+      if (!c->part[at]) continue;
+      if (c->part[right]) add_edge(c, at, right, 1);
+      if (c->part[below]) add_edge(c, at, below, 3);
+    }
+  RC_TRY(rc_grid_cut(context, g, c->taken));
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      size_t at = grid_at(c, x, y), own = rc_level_at(level, x, y);
+      if (!c->taken[at] || c->cost_of[at] >= RC_NO_COST || rc_same_copy(level->field[own], copy))
+        continue;
+      level->field[own] = copy, c->cost[at] = c->cost_of[at];
+      look_at_own(c, x, y);
+      *changed = true;
+    }
+  return rc_poll(context);
+}
+
+typedef struct candidate {
+  rc_copy copy;
+  int pixels;
+} candidate;
+
+/* The largest copies of the field; how many. */
+static recede_status find_copies(rc_context *context, const rc_level *level,
+                                 candidate chosen[MOST_COPIES], int *count) {
+  int pixels = level->box_w * level->box_h, all = 0;
+  candidate *found;
+  *count = 0;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, pixels, &found));
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      rc_copy copy = level->field[rc_level_at(level, x, y)];
+      int i = all - 1;
+      if (!rc_level_is_target(level, x, y) || isnan(copy.a)) continue;
+      while (i >= 0 && !rc_same_copy(found[i].copy, copy)) i--;
+      if (i < 0) i = all++, found[i] = (candidate){copy, 0};
+      found[i].pixels++;
+    }
+  while (*count < MOST_COPIES) {
+    int most = 0;
+    for (int i = 1; i < all; i++)
+      if (found[i].pixels > found[most].pixels) most = i;
+    if (!all || found[most].pixels < LEAST_PIXELS) break;
+    chosen[(*count)++] = found[most];
+    found[most].pixels = 0;
+  }
+  rc_release(context, mark);
+  return rc_poll(context);
+}
+
+recede_status rc_cut_copies(rc_context *context, const rc_kernels *kernels, rc_level *level) {
+  cuts c = {.kernels = kernels, .level = level};
+  candidate copies[MOST_COPIES];
+  int count;
+  if (!(level->variance > 0.f)) return RECEDE_OK;
+  RC_TRY(find_copies(context, level, copies, &count));
+  rc_block *mark = rc_mark(context);
+  RC_TRY(prepare(context, &c));
+  for (int round = 0; round < ROUNDS; round++) {
+    int left = 0;
+    for (int i = 0; i < count; i++) {
+      bool changed = false;
+      RC_TRY(expand(context, &c, copies[i].copy, &changed));
+      if (changed) copies[left++] = copies[i];
+    }
+    count = left;
+  }
+  rc_release(context, mark);
+  return RECEDE_OK;
+}

@@ -1,0 +1,11 @@
+/* Where copies meet: seams are led where the copies on both sides look alike, between stones and
+ * not through them, and one large copy takes what several small ones had. */
+#ifndef RECEDE_SYNTHESIS_CUTS_H
+#define RECEDE_SYNTHESIS_CUTS_H
+
+#include "synthesis/level.h"
+
+/* Changes the level's field. Locked pixels keep their copies. */
+recede_status rc_cut_copies(rc_context *context, const rc_kernels *kernels, rc_level *level);
+
+#endif
