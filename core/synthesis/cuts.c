@@ -10,17 +10,23 @@
 #include "synthesis/evaluate.h"
 #include "synthesis/mincut.h"
 
-/* Copies that may expand, the largest, and how often each that takes anything. */
+/* So many copies may expand, the largest, and those that take anything once more. */
 #define MOST_COPIES 16
 #define LEAST_PIXELS 4
 #define ROUNDS 2
-/* Beside what is known a copy's distance, in variances, counts so much times the part of the patch
- * that is known; deeper in the hole only its place has a price, for any stone will do there. */
+/* Squares of differences are told in so many times what neighbours within a copy differ by, bytes:
+ * of textures that is half their variance, but smooth sand must not be measured by its shadows. */
+#define UNIT_OF_CHANGES 5.
+#define LEAST_UNIT 1.f
+/* Beside what is known the distance of a copy's patch counts so much times the part that is known.
+ * Deeper in the hole any stone will do; but what the guide has nothing of, a person's shadow in
+ * sand, costs a little of the square that it differs by. */
 #define OF_KNOWN 4.f
-/* A seam costs what the copies differ by at both pixels, in deviations, and so much in itself. */
+#define OF_GUIDE .01f
+/* A seam costs what the copies differ by at both pixels, and so much in itself. */
 #define OF_SEAM .02f
 /* Capacities are integers, so many to a unit, and none may count more than: */
-#define UNIT 1000.f
+#define FIXED_POINT 1000.f
 #define MOST (1 << 26)
 
 typedef struct colour {
@@ -39,8 +45,14 @@ typedef struct cuts {
   colour *own;    /* what the own copy has here and to the left, right, above and below */
   colour *other;  /* what the one that expands has */
   uint8_t *taken;
-  float per_deviation;
+  float unit; /* of squares */
 } cuts;
+
+static colour colour_of(uint32_t pixel) {
+  colour c;
+  for (int k = 0; k < RC_COMPONENTS; k++) c.value[k] = (float)(pixel >> 8 * k & 255);
+  return c;
+}
 
 static const int step_x[4] = {-1, 1, 0, 0}, step_y[4] = {0, 0, -1, 1};
 
@@ -68,21 +80,14 @@ static colour sample(const rc_level *level, rc_copy copy, int x, int y) {
   return c;
 }
 
-static float apart(const colour *p, const colour *q) {
-  float sum = 0;
-  for (int k = 0; k < RC_COMPONENTS; k++)
-    sum += (p->value[k] - q->value[k]) * (p->value[k] - q->value[k]);
-  return sqrtf(sum);
-}
-
 static int32_t fixed(float value) {
-  return value < (float)MOST / UNIT ? rc_floor(value * UNIT + .5f) : MOST;
+  return value < (float)MOST / FIXED_POINT ? rc_floor(value * FIXED_POINT + .5f) : MOST;
 }
 
 /* Of two copies that differ by so much at the two pixels of a seam; 0: it is none. */
 static int32_t seam(const cuts *c, float here, float there) {
   if (here + there <= 0.f) return 0;
-  return fixed(OF_SEAM + (here + there) * c->per_deviation);
+  return fixed(OF_SEAM + (here + there) / sqrtf(c->unit));
 }
 
 /* How much of the patch is known. */
@@ -94,17 +99,29 @@ static float known_part(const rc_level *level, int x, int y) {
   return (float)known / RC_PATCH_PIXELS;
 }
 
-/* In variances; RC_NO_COST: it is not allowed. */
-static float cost_at(const cuts *c, rc_query *query, rc_copy copy, int x, int y) {
-  float known = c->known[grid_at(c, x, y)], variance = c->level->variance;
+static float square_apart(const colour *p, const colour *q) {
+  float sum = 0;
+  for (int k = 0; k < RC_COMPONENTS; k++)
+    sum += (p->value[k] - q->value[k]) * (p->value[k] - q->value[k]);
+  return sum;
+}
+
+static float apart(const colour *p, const colour *q) { return sqrtf(square_apart(p, q)); }
+
+/* What a copy that shows this colour costs, in units; RC_NO_COST: it is not allowed. */
+static float cost_at(const cuts *c, rc_query *query, rc_copy copy, const colour *shown, int x,
+                     int y) {
+  float known = c->known[grid_at(c, x, y)], unit = c->unit;
+  colour guide = colour_of(c->level->pixels[(size_t)y * (size_t)c->level->width + (size_t)x]);
+  float odd = OF_GUIDE * square_apart(shown, &guide) / unit;
   rc_query_set(c->level, x, y, query);
   rc_place place = rc_query_place(c->level, query, copy);
   if (known > 0.f) {
     float cost = rc_query_cost(c->level, c->kernels, query, copy, &place, RC_NO_COST);
-    return cost < RC_NO_COST ? known * cost / variance : cost;
+    return cost < RC_NO_COST ? known * cost / unit + odd : cost;
   }
   float price = rc_query_price(c->level, query, copy, &place);
-  return price < RC_NO_COST ? price / variance : price;
+  return price < RC_NO_COST ? price / unit + odd : price;
 }
 
 static void look_at_own(cuts *c, int x, int y) {
@@ -118,7 +135,6 @@ static void look_at_own(cuts *c, int x, int y) {
 static recede_status prepare(rc_context *context, cuts *c) {
   rc_level *level = c->level;
   size_t count = (size_t)(level->box_w + 2) * (size_t)(level->box_h + 2);
-  rc_query query;
   RC_TRY(rc_grid_new(context, level->box_w + 2, level->box_h + 2, &c->grid));
   RC_TRY(RC_NEW_ZERO(context, count, &c->part));
   RC_TRY(RC_NEW(context, count, &c->known));
@@ -127,18 +143,35 @@ static recede_status prepare(rc_context *context, cuts *c) {
   RC_TRY(RC_NEW(context, 5 * count, &c->own));
   RC_TRY(RC_NEW(context, count, &c->other));
   RC_TRY(RC_NEW(context, count, &c->taken));
-  c->per_deviation = 1.f / sqrtf(level->variance);
-  rc_query_init(&query);
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
-      size_t at = rc_level_at(level, x, y);
-      if (!rc_level_is_target(level, x, y) || isnan(level->field[at].a)) continue;
-      c->part[grid_at(c, x, y)] = 1;
-      c->known[grid_at(c, x, y)] = OF_KNOWN * known_part(level, x, y);
-      c->cost[grid_at(c, x, y)] = cost_at(c, &query, level->field[at], x, y);
+      size_t at = grid_at(c, x, y);
+      if (!rc_level_is_target(level, x, y) || isnan(level->field[rc_level_at(level, x, y)].a))
+        continue;
+      c->part[at] = 1;
+      c->known[at] = OF_KNOWN * known_part(level, x, y);
       look_at_own(c, x, y);
     }
   return rc_poll(context);
+}
+
+/* What the own copies cost, and in which unit. */
+static void price_own(cuts *c) {
+  const rc_level *level = c->level;
+  double changes = 0, count = 0;
+  rc_query query;
+  rc_query_init(&query);
+  for (size_t at = 0; at < (size_t)c->grid.width * (size_t)c->grid.height; at++)
+    for (int k = 1; k < 5 && c->part[at]; k++, count++)
+      changes += (double)square_apart(&c->own[5 * at], &c->own[5 * at + (size_t)k]);
+  c->unit = (float)(UNIT_OF_CHANGES * changes / fmax(count, 1)) + LEAST_UNIT;
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      size_t at = grid_at(c, x, y);
+      if (c->part[at])
+        c->cost[at] =
+            cost_at(c, &query, level->field[rc_level_at(level, x, y)], &c->own[5 * at], x, y);
+    }
 }
 
 /* Adds what the seams between a pixel and its neighbour, right or below, ask for. */
@@ -170,8 +203,8 @@ static recede_status expand(rc_context *context, cuts *c, rc_copy copy, bool *ch
       if (!c->part[at]) continue;
       size_t own = rc_level_at(level, x, y);
       bool locked = level->locked && level->locked[own];
-      c->cost_of[at] = locked ? RC_NO_COST : cost_at(c, &query, copy, x, y);
       c->other[at] = sample(level, copy, x, y);
+      c->cost_of[at] = locked ? RC_NO_COST : cost_at(c, &query, copy, &c->other[at], x, y);
       g->end[at] += fixed(c->cost_of[at]) - fixed(c->cost[at]);
     }
   for (int y = level->box.y0; y < level->box.y1; y++)
@@ -236,6 +269,7 @@ recede_status rc_cut_copies(rc_context *context, const rc_kernels *kernels, rc_l
   RC_TRY(find_copies(context, level, copies, &count));
   rc_block *mark = rc_mark(context);
   RC_TRY(prepare(context, &c));
+  price_own(&c);
   for (int round = 0; round < ROUNDS; round++) {
     int left = 0;
     for (int i = 0; i < count; i++) {

@@ -64,6 +64,68 @@ static void parquet_goes_on(void) {
   g_assert_cmpfloat(without, <, with - .15);
 }
 
+/* Round stones, each of one shade, on dark ground. */
+static double stones(double u, double v, int k) {
+  (void)k;
+  for (int j = -1; j <= 1; j++)
+    for (int i = -1; i <= 1; i++) {
+      int x = (int)floor(u) + i, y = (int)floor(v) + j;
+      double dx = u - x - .2 - .6 * noise_at(x, y, 1), dy = v - y - .2 - .6 * noise_at(x, y, 2);
+      if (hypot(dx, dy) < .3 + .15 * noise_at(x, y, 3)) return .45 + .5 * noise_at(x, y, 4);
+    }
+  return .1;
+}
+
+#define STONE_PX 26.
+#define LEAST_STONE_PX 7 /* of the radii */
+
+static bool is_stone(const picture *p, int x, int y) { return picture_get(p, x, y, 0) > .3f; }
+
+/* Whether the smallest of all stones fits in here. */
+static bool fits(const picture *p, int x, int y) {
+  for (int j = -LEAST_STONE_PX; j <= LEAST_STONE_PX; j++)
+    for (int i = -LEAST_STONE_PX; i <= LEAST_STONE_PX; i++)
+      if (i * i + j * j <= LEAST_STONE_PX * LEAST_STONE_PX && !is_stone(p, x + i, y + j))
+        return false;
+  return true;
+}
+
+static bool in_a_whole_stone(const picture *p, int x, int y) {
+  for (int j = -LEAST_STONE_PX; j <= LEAST_STONE_PX; j++)
+    for (int i = -LEAST_STONE_PX; i <= LEAST_STONE_PX; i++)
+      if (i * i + j * j <= LEAST_STONE_PX * LEAST_STONE_PX && fits(p, x + i, y + j)) return true;
+  return false;
+}
+
+/* Which part of what is stone, away from the hole's border, is chips and tails. */
+static double chips(const char *settings) {
+  const area pit = {150, 105, 270, 215}, inner = {162, 117, 258, 203};
+  double stone = 0, chip = 0;
+  for (int seed = 0; seed < 6; seed++) {
+    picture p = picture_new(420, 320, 1, RECEDE_U8);
+    for (int y = 0; y < 320; y++)
+      for (int x = 0; x < 420; x++)
+        picture_set(&p, x, y, 0, (float)stones(x / STONE_PX + 40 * seed, y / STONE_PX, 0));
+    task t = task_new(p, settings);
+    task_set(&t, "orientation=frontal");
+    task_hole(&t, pit);
+    task_succeeds(&t);
+    for (int y = inner.y0; y < inner.y1; y++)
+      for (int x = inner.x0; x < inner.x1; x++) {
+        if (!is_stone(&t.result, x, y)) continue;
+        stone++, chip += !in_a_whole_stone(&t.result, x, y);
+      }
+    task_clear(&t);
+  }
+  g_test_message("%s: %.3f of the stones are chips", settings, chip / stone);
+  return chip / stone;
+}
+
+static void stones_stay_whole(void) {
+  double with = chips(""), without = chips("engine-cuts=0");
+  g_assert_cmpfloat(with, <, .6 * without);
+}
+
 /* Stripes as regular as any grid of samples, which must not see one of their two shades alone. */
 static void stripes_go_on(void) {
   const area middle = {270, 270, 338, 338};
@@ -85,6 +147,7 @@ static void stripes_go_on(void) {
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/texture/parquet", parquet_goes_on);
+  g_test_add_func("/texture/stones", stones_stay_whole);
   g_test_add_func("/texture/stripes", stripes_go_on);
   return g_test_run();
 }
