@@ -14,24 +14,27 @@
 /* Each px deeper in the hole counts 1.3 times less; 1.15 is too trusting. */
 #define CONFIDENCE_FALLOFF 1.3f
 
-/* A cut through so many pixels takes .1 s. */
+/* A cut through so many pixels takes .1 s, and one through so large a box 5 MB. */
 #define LEAST_CUT_LEVEL 1
 #define MOST_CUT 12000
+#define MOST_CUT_BOX 30000
 
 /* The finest level that is searched: what it settles on is composed. */
 static int last_searched(const rc_descent *e) { return rc_iterations_at(e, 0) ? 0 : 1; }
 
-static int targets_of(const rc_mask *flags) {
-  int count = 0;
+static bool can_be_cut(const rc_mask *flags) {
+  rc_box box = rc_box_of(flags, RC_TARGET);
+  int64_t targets = 0;
   for (size_t i = 0; i < (size_t)flags->width * (size_t)flags->height; i++)
-    count += (flags->data[i] & RC_TARGET) != 0;
-  return count;
+    targets += (flags->data[i] & RC_TARGET) != 0;
+  return targets <= MOST_CUT && (int64_t)(box.x1 - box.x0) * (box.y1 - box.y0) <= MOST_CUT_BOX;
 }
 
-/* The finest level where seams are led by cuts; finer ones refine what lies beside them. */
+/* The finest level where seams are led by cuts; finer ones refine what lies beside them. The number
+ * of levels: there is none. */
 static int cut_level(const rc_descent *e) {
   int exponent = LEAST_CUT_LEVEL;
-  while (exponent + 1 < e->level_count && targets_of(&e->flags[exponent]) > MOST_CUT) exponent++;
+  while (exponent < e->level_count && !can_be_cut(&e->flags[exponent])) exponent++;
   return exponent;
 }
 
