@@ -22,6 +22,11 @@
 /* The finest level that is searched: what it settles on is composed. */
 static int last_searched(const rc_descent *e) { return rc_iterations_at(e, 0) ? 0 : 1; }
 
+/* Boards are filled one by one; and a seam across a lane costs little, but cuts it off. */
+static bool may_cut(const rc_descent *e) {
+  return e->params->engine_cuts && !e->on_rails && !e->line_count;
+}
+
 static bool can_be_cut(const rc_mask *flags) {
   rc_box box = rc_box_of(flags, RC_TARGET);
   int64_t targets = 0;
@@ -49,8 +54,7 @@ static recede_status search_level(rc_context *context, rc_descent *e, int expone
     if (e->on_rails) RC_TRY(rc_boards_mark(context, &e->rails, exponent, level));
     RC_TRY(rc_iterate(context, e, exponent, 0, 0, p.total, &p, level, &scratch));
   }
-  if (exponent == cut_level(e) && e->params->engine_cuts && !e->on_rails)
-    RC_TRY(rc_cut_copies(context, e->kernels, level));
+  if (may_cut(e) && exponent == cut_level(e)) RC_TRY(rc_cut_copies(context, e->kernels, level));
   return exponent == last_searched(e) ? rc_settle(context, e, level, &scratch) : RECEDE_OK;
 }
 
