@@ -226,32 +226,6 @@ static void boards_run_out_of_the_picture(void) {
   }
 }
 
-/* Bushes in rows, seven times as long as high, that nothing straight lies between. */
-static double bushes(double u, double v, int k) {
-  double x = u / 3.5, y = 2 * v, sum = 0;
-  int i = (int)floor(x), j = (int)floor(y);
-  double a = x - i, b = y - j;
-  (void)k;
-  for (int n = 0; n < 4; n++)
-    sum += (n & 1 ? a : 1 - a) * (n & 2 ? b : 1 - b) * noise_at(i + (n & 1), j + (n >> 1), 5);
-  return .1 + .8 * sum;
-}
-
-/* What merely lies lengthwise is no board: inside the picture lines would cross the hole. */
-static void bushes_do_not_run(void) {
-  guint64 hash[2];
-  for (int rails = 0; rails < 2; rails++) {
-    task t = task_new(picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, bushes, 16, 30, 0),
-                      rails ? "" : "engine-rails=0");
-    t.params.slant_deg = 30;
-    task_hole(&t, hole);
-    task_succeeds(&t);
-    hash[rails] = t.report.output_hash;
-    task_clear(&t);
-  }
-  g_assert_cmphex(hash[0], ==, hash[1]);
-}
-
 /* Tiles, each of its own shade. */
 static double tiles(double u, double v, int k) {
   if (u - floor(u) < .08 || v - floor(v) < .08) return .2;
@@ -354,7 +328,6 @@ int main(int argc, char **argv) {
   g_test_add_func("/lines/markings", markings_keep_both_edges);
   g_test_add_func("/lines/boards", boards_run);
   g_test_add_func("/lines/out-of-the-picture", boards_run_out_of_the_picture);
-  g_test_add_func("/lines/bushes", bushes_do_not_run);
   g_test_add_func("/lines/one-by-one", boards_are_filled_one_by_one);
   g_test_add_func("/lines/pier", boards_of_a_pier_run);
   g_test_add_func("/lines/tiles", tiles_do_not);
