@@ -90,12 +90,17 @@ static int32_t seam(const cuts *c, float here, float there) {
   return fixed(OF_SEAM + (here + there) / sqrtf(c->unit));
 }
 
+static bool is_known(const rc_level *level, int x, int y) {
+  uint8_t flags = level->flags[(size_t)y * (size_t)level->width + (size_t)x];
+  return (flags & (RC_TARGET | RC_KNOWN)) == RC_KNOWN;
+}
+
 /* How much of the patch is known. */
 static float known_part(const rc_level *level, int x, int y) {
   int known = 0;
   for (int j = y - RC_PATCH_RADIUS; j <= y + RC_PATCH_RADIUS; j++)
     for (int i = x - RC_PATCH_RADIUS; i <= x + RC_PATCH_RADIUS; i++)
-      known += rc_inside(level->width, level->height, i, j) && !rc_level_is_target(level, i, j);
+      known += rc_inside(level->width, level->height, i, j) && is_known(level, i, j);
   return (float)known / RC_PATCH_PIXELS;
 }
 
@@ -108,18 +113,24 @@ static float square_apart(const colour *p, const colour *q) {
 
 static float apart(const colour *p, const colour *q) { return sqrtf(square_apart(p, q)); }
 
+static float distance_at(const cuts *c, rc_query *query, rc_copy copy, int x, int y) {
+  rc_query_set(c->level, x, y, query);
+  rc_place place = rc_query_place(c->level, query, copy);
+  return rc_query_cost(c->level, c->kernels, query, copy, &place, RC_NO_COST);
+}
+
 /* What a copy that shows this colour costs, in units; RC_NO_COST: it is not allowed. */
 static float cost_at(const cuts *c, rc_query *query, rc_copy copy, const colour *shown, int x,
                      int y) {
   float known = c->known[grid_at(c, x, y)], unit = c->unit;
   colour guide = colour_of(c->level->pixels[(size_t)y * (size_t)c->level->width + (size_t)x]);
   float odd = OF_GUIDE * square_apart(shown, &guide) / unit;
-  rc_query_set(c->level, x, y, query);
-  rc_place place = rc_query_place(c->level, query, copy);
   if (known > 0.f) {
-    float cost = rc_query_cost(c->level, c->kernels, query, copy, &place, RC_NO_COST);
+    float cost = distance_at(c, query, copy, x, y);
     return cost < RC_NO_COST ? known * cost / unit + odd : cost;
   }
+  rc_query_set(c->level, x, y, query);
+  rc_place place = rc_query_place(c->level, query, copy);
   float price = rc_query_price(c->level, query, copy, &place);
   return price < RC_NO_COST ? price / unit + odd : price;
 }
@@ -201,10 +212,8 @@ static recede_status expand(rc_context *context, cuts *c, rc_copy copy, bool *ch
     for (int x = level->box.x0; x < level->box.x1; x++) {
       size_t at = grid_at(c, x, y);
       if (!c->part[at]) continue;
-      size_t own = rc_level_at(level, x, y);
-      bool locked = level->locked && level->locked[own];
       c->other[at] = sample(level, copy, x, y);
-      c->cost_of[at] = locked ? RC_NO_COST : cost_at(c, &query, copy, &c->other[at], x, y);
+      c->cost_of[at] = cost_at(c, &query, copy, &c->other[at], x, y);
       g->end[at] += fixed(c->cost_of[at]) - fixed(c->cost[at]);
     }
   for (int y = level->box.y0; y < level->box.y1; y++)
@@ -220,7 +229,8 @@ static recede_status expand(rc_context *context, cuts *c, rc_copy copy, bool *ch
       size_t at = grid_at(c, x, y), own = rc_level_at(level, x, y);
       if (!c->taken[at] || c->cost_of[at] >= RC_NO_COST || rc_same_copy(level->field[own], copy))
         continue;
-      level->field[own] = copy, c->cost[at] = c->cost_of[at];
+      level->field[own] = copy, level->cost[own] = distance_at(c, &query, copy, x, y);
+      c->cost[at] = c->cost_of[at];
       look_at_own(c, x, y);
       *changed = true;
     }

@@ -5,7 +5,7 @@
 
 #include "synthesis/level.h"
 
-/* Changes the level's field. Locked pixels keep their copies. */
+/* Changes the level's field, and its costs. */
 recede_status rc_cut_copies(rc_context *context, const rc_kernels *kernels, rc_level *level);
 
 #endif

@@ -35,9 +35,8 @@ static bool can_be_cut(const rc_mask *flags) {
   return targets <= MOST_CUT && (int64_t)(box.x1 - box.x0) * (box.y1 - box.y0) <= MOST_CUT_BOX;
 }
 
-/* The finest level where seams are led by cuts; finer ones refine what lies beside them. The number
- * of levels: there is none. */
-static int cut_level(const rc_descent *e) {
+/* The finest that can be; finer ones refine what lies beside the seams. */
+static int find_cut_level(const rc_descent *e) {
   int exponent = LEAST_CUT_LEVEL;
   while (exponent < e->level_count && !can_be_cut(&e->flags[exponent])) exponent++;
   return exponent;
@@ -54,7 +53,7 @@ static recede_status search_level(rc_context *context, rc_descent *e, int expone
     if (e->on_rails) RC_TRY(rc_boards_mark(context, &e->rails, exponent, level));
     RC_TRY(rc_iterate(context, e, exponent, 0, 0, p.total, &p, level, &scratch));
   }
-  if (may_cut(e) && exponent == cut_level(e)) RC_TRY(rc_cut_copies(context, e->kernels, level));
+  if (may_cut(e) && exponent == e->cut_level) RC_TRY(rc_cut_copies(context, e->kernels, level));
   return exponent == last_searched(e) ? rc_settle(context, e, level, &scratch) : RECEDE_OK;
 }
 
@@ -72,6 +71,7 @@ static recede_status run_level(rc_context *context, rc_descent *e, int exponent,
 recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
   rc_level coarser = {0}, level = {0};
   float gamma = e->params->engine_confidence ? CONFIDENCE_FALLOFF : 1.f;
+  e->cut_level = find_cut_level(e);
   for (int exponent = e->level_count - 1; exponent >= 0; exponent--) {
     bool coarsest = exponent == e->level_count - 1;
     rc_chart chart = rc_chart_coarser(e->chart, exponent);

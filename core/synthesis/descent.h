@@ -26,6 +26,7 @@ typedef struct rc_descent {
   rc_rails rails;
   rc_sides sides;                /* of the finest level */
   bool on_rails, continue_lines; /* starts that kept to them fitted well enough */
+  int cut_level;                 /* where seams are led by cuts; level_count: nowhere */
   uint64_t rest;                 /* out: pixels that only continue what lies beside them */
 } rc_descent;
 
