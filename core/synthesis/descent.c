@@ -24,7 +24,7 @@ static int last_searched(const rc_descent *e) { return rc_iterations_at(e, 0) ? 
 
 /* Boards are filled one by one; and a seam across a lane costs little, but cuts it off. */
 static bool may_cut(const rc_descent *e) {
-  return e->params->engine_cuts && !e->on_rails && !e->line_count;
+  return e->params->engine_cuts && rc_effort_of(e)->cuts && !e->on_rails && !e->line_count;
 }
 
 static bool can_be_cut(const rc_mask *flags) {

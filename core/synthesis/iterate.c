@@ -14,9 +14,9 @@
 #define RAIL_TOLERANCE_PX .25f
 
 static const rc_effort efforts[] = {
-    [RECEDE_QUALITY_DRAFT] = {2, 30, 6, 2, 0, 2, 8, {7, 24}},
-    [RECEDE_QUALITY_NORMAL] = {6, 60, 12, 2, 2, 4, 16, {22, 64}},
-    [RECEDE_QUALITY_BEST] = {12, 100, 24, 4, 4, 6, 16, {22, 96}},
+    [RECEDE_QUALITY_DRAFT] = {2, 30, 6, 2, 0, 2, 8, false, {7, 24}},
+    [RECEDE_QUALITY_NORMAL] = {6, 60, 12, 2, 2, 4, 16, true, {22, 64}},
+    [RECEDE_QUALITY_BEST] = {12, 100, 24, 4, 4, 6, 16, true, {22, 96}},
 };
 
 const rc_effort *rc_effort_of(const rc_descent *e) { return &efforts[e->params->quality]; }

@@ -14,6 +14,7 @@ typedef struct rc_effort {
   int finest_iterations; /* and these at the finest; 0: only takes the coarser copies over */
   int anywhere;          /* random candidates per pixel from all sources, coarsest level */
   int local_radius;      /* largest radius of the random candidates nearby, px */
+  bool cuts;             /* whether seams are led by cuts */
   rc_join join;
 } rc_effort;
 
