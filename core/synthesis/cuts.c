@@ -229,8 +229,7 @@ static recede_status expand(rc_context *context, cuts *c, rc_copy copy, bool *ch
       size_t at = grid_at(c, x, y), own = rc_level_at(level, x, y);
       if (!c->taken[at] || c->cost_of[at] >= RC_NO_COST || rc_same_copy(level->field[own], copy))
         continue;
-      level->field[own] = copy, level->cost[own] = distance_at(c, &query, copy, x, y);
-      c->cost[at] = c->cost_of[at];
+      level->field[own] = copy, c->cost[at] = c->cost_of[at];
       look_at_own(c, x, y);
       *changed = true;
     }

@@ -5,7 +5,8 @@
 
 #include "synthesis/level.h"
 
-/* Changes the level's field, and its costs. */
+/* Changes the level's field, not its costs: by the guide, which the old copies made, the new ones
+ * would seem bad, and the next level's first vote would hardly count them. */
 recede_status rc_cut_copies(rc_context *context, const rc_kernels *kernels, rc_level *level);
 
 #endif
