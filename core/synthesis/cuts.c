@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "synthesis/evaluate.h"
 #include "synthesis/mincut.h"
+#include "synthesis/usage.h"
 
 /* So many copies may expand, the largest, and those that take anything once more. */
 #define MOST_COPIES 16
@@ -25,9 +26,14 @@
 #define OF_GUIDE .01f
 /* A seam costs what the copies differ by at both pixels, and so much in itself. */
 #define OF_SEAM .02f
-/* Capacities are integers, so many to a unit, and none may count more than: */
+/* A source that other copies show, too, costs so much: of drawn stones .076 came again without a
+ * price, .057 by .1, .043 by .4, where more of them were chips. */
+#define OF_USE .1f
+/* Capacities are integers, so many to a unit, and none may count more than MOST, but a copy that is
+ * not allowed more than all seams of a pixel. */
 #define FIXED_POINT 1000.f
-#define MOST (1 << 26)
+#define MOST (1 << 23)
+#define FORBIDDEN (1 << 27)
 
 typedef struct colour {
   float value[RC_COMPONENTS];
@@ -45,7 +51,8 @@ typedef struct cuts {
   colour *own;    /* what the own copy has here and to the left, right, above and below */
   colour *other;  /* what the one that expands has */
   uint8_t *taken;
-  float unit; /* of squares */
+  float *uses; /* of every pixel of the picture; NULL: they cost nothing */
+  float unit;  /* of squares */
 } cuts;
 
 static colour colour_of(uint32_t pixel) {
@@ -135,6 +142,23 @@ static float cost_at(const cuts *c, rc_query *query, rc_copy copy, const colour 
   return price < RC_NO_COST ? price / unit + odd : price;
 }
 
+/* What it costs that others show the copy's source at (x, y), too. */
+static float price_of_use(const cuts *c, rc_copy copy, int x, int y, bool is_own) {
+  const rc_level *level = c->level;
+  rc_place place = rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
+  size_t at;
+  if (!c->uses || !rc_place_at(level, &place, &at)) return 0.f;
+  /* Copies of other sizes leave gaps and heaps, so the mean of 3 x 3. */
+  int sx = (int)(at % (size_t)level->width), sy = (int)(at / (size_t)level->width);
+  float uses = 0;
+  for (int j = -1; j <= 1; j++)
+    for (int i = -1; i <= 1; i++)
+      if (rc_inside(level->width, level->height, sx + i, sy + j))
+        uses += c->uses[(size_t)(sy + j) * (size_t)level->width + (size_t)(sx + i)];
+  uses = uses / 9 - (is_own ? rc_use_of(&place) : 0.f);
+  return OF_USE * fminf(fmaxf(uses, 0.f), 1.f);
+}
+
 static void look_at_own(cuts *c, int x, int y) {
   size_t at = grid_at(c, x, y);
   rc_copy copy = c->level->field[rc_level_at(c->level, x, y)];
@@ -143,7 +167,7 @@ static void look_at_own(cuts *c, int x, int y) {
     c->own[5 * at + 1 + (size_t)k] = sample(c->level, copy, x + step_x[k], y + step_y[k]);
 }
 
-static recede_status prepare(rc_context *context, cuts *c) {
+static recede_status prepare(rc_context *context, bool price_uses, cuts *c) {
   rc_level *level = c->level;
   size_t count = (size_t)(level->box_w + 2) * (size_t)(level->box_h + 2);
   RC_TRY(rc_grid_new(context, level->box_w + 2, level->box_h + 2, &c->grid));
@@ -154,6 +178,7 @@ static recede_status prepare(rc_context *context, cuts *c) {
   RC_TRY(RC_NEW(context, 5 * count, &c->own));
   RC_TRY(RC_NEW(context, count, &c->other));
   RC_TRY(RC_NEW(context, count, &c->taken));
+  if (price_uses) RC_TRY(RC_NEW(context, (size_t)level->width * (size_t)level->height, &c->uses));
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
       size_t at = grid_at(c, x, y);
@@ -206,6 +231,7 @@ static recede_status expand(rc_context *context, cuts *c, rc_copy copy, bool *ch
   size_t count = (size_t)g->width * (size_t)g->height;
   rc_query query;
   rc_query_init(&query);
+  if (c->uses) rc_count_uses(level, c->uses);
   memset(g->end, 0, count * sizeof *g->end);
   for (int k = 0; k < 4; k++) memset(g->beside[k], 0, count * sizeof *g->beside[k]);
   for (int y = level->box.y0; y < level->box.y1; y++)
@@ -214,7 +240,11 @@ static recede_status expand(rc_context *context, cuts *c, rc_copy copy, bool *ch
       if (!c->part[at]) continue;
       c->other[at] = sample(level, copy, x, y);
       c->cost_of[at] = cost_at(c, &query, copy, &c->other[at], x, y);
-      g->end[at] += fixed(c->cost_of[at]) - fixed(c->cost[at]);
+      rc_copy own = level->field[rc_level_at(level, x, y)];
+      bool same = rc_same_copy(own, copy);
+      int32_t taken = fixed(c->cost_of[at] + price_of_use(c, copy, x, y, same));
+      int32_t kept = fixed(c->cost[at] + price_of_use(c, own, x, y, true));
+      g->end[at] += c->cost_of[at] < RC_NO_COST ? taken - kept : FORBIDDEN;
     }
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
@@ -227,8 +257,7 @@ static recede_status expand(rc_context *context, cuts *c, rc_copy copy, bool *ch
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
       size_t at = grid_at(c, x, y), own = rc_level_at(level, x, y);
-      if (!c->taken[at] || c->cost_of[at] >= RC_NO_COST || rc_same_copy(level->field[own], copy))
-        continue;
+      if (!c->taken[at] || rc_same_copy(level->field[own], copy)) continue;
       level->field[own] = copy, c->cost[at] = c->cost_of[at];
       look_at_own(c, x, y);
       *changed = true;
@@ -270,14 +299,14 @@ static recede_status find_copies(rc_context *context, const rc_level *level,
   return rc_poll(context);
 }
 
-recede_status rc_cut_copies(rc_context *context, const rc_kernels *kernels, rc_level *level) {
+recede_status rc_cut_copies(rc_context *context, const rc_kernels *kernels, bool price_uses,
+                            rc_level *level) {
   cuts c = {.kernels = kernels, .level = level};
   candidate copies[MOST_COPIES];
   int count;
-  if (!(level->variance > 0.f)) return RECEDE_OK;
   RC_TRY(find_copies(context, level, copies, &count));
   rc_block *mark = rc_mark(context);
-  RC_TRY(prepare(context, &c));
+  RC_TRY(prepare(context, price_uses, &c));
   price_own(&c);
   for (int round = 0; round < ROUNDS; round++) {
     int left = 0;

@@ -6,7 +6,9 @@
 #include "synthesis/level.h"
 
 /* Changes the level's field, not its costs: by the guide, which the old copies made, the new ones
- * would seem bad, and the next level's first vote would hardly count them. */
-recede_status rc_cut_copies(rc_context *context, const rc_kernels *kernels, rc_level *level);
+ * would seem bad, and the next level's first vote would hardly count them. price_uses: the same
+ * source costs more where the field takes it elsewhere, too: the same stone twice is seen. */
+recede_status rc_cut_copies(rc_context *context, const rc_kernels *kernels, bool price_uses,
+                            rc_level *level);
 
 #endif

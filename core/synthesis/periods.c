@@ -86,7 +86,7 @@ static int stronger_first(const void *a, const void *b) {
 }
 
 static recede_status collect(rc_context *context, const correlation *c,
-                             rc_copy periods[RC_MOST_PERIODS], int *count) {
+                             rc_copy periods[RC_MOST_PERIODS], int *count, float *strongest) {
   peak *peaks;
   int found = 0, most = (c->lag + 1) * (2 * c->lag + 1);
   RC_TRY(RC_NEW(context, most, &peaks));
@@ -99,6 +99,7 @@ static recede_status collect(rc_context *context, const correlation *c,
                  (float)dy + vertex(value_at(c, dx, dy - 1), own, value_at(c, dx, dy + 1))};
     }
   qsort(peaks, (size_t)found, sizeof *peaks, stronger_first);
+  if (found) *strongest = peaks[0].value;
   for (int i = 0; i < found && *count + 1 < RC_MOST_PERIODS; i++) {
     periods[(*count)++] = (rc_copy){peaks[i].x, peaks[i].y, 0.f};
     periods[(*count)++] = (rc_copy){-peaks[i].x, -peaks[i].y, 0.f};
@@ -114,14 +115,14 @@ static float trait_of(const rc_level *level, uint32_t pixel) {
 }
 
 recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key,
-                              rc_copy periods[RC_MOST_PERIODS], int *count) {
+                              rc_copy periods[RC_MOST_PERIODS], int *count, float *strongest) {
   size_t pixels = (size_t)level->width * (size_t)level->height;
   int sources = rc_level_all_sources(level).end;
   int third = (level->width < level->height ? level->width : level->height) / 3;
   correlation c = {.level = level, .flat = rc_chart_flat(level->chart)};
   float *trait;
   int32_t *points;
-  *count = 0;
+  *count = 0, *strongest = 0.f;
   c.lag = third < MOST_LAG_PX ? third : MOST_LAG_PX;
   if (sources < LEAST_SHARED || c.lag <= LEAST_LAG_PX) return RECEDE_OK;
   rc_block *mark = rc_mark(context);
@@ -134,7 +135,7 @@ recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64
         level->order[rc_below((uint32_t)rc_random(key, (uint32_t)i, 0, 0), (uint32_t)sources)];
   c.trait = trait, c.points = points;
   RC_TRY(rc_parallel(context, c.lag + 1, correlate_row, &c));
-  RC_TRY(collect(context, &c, periods, count));
+  RC_TRY(collect(context, &c, periods, count, strongest));
   rc_release(context, mark);
   return RECEDE_OK;
 }

@@ -14,7 +14,8 @@
 #define PRICE_OF_USE .2f
 #define MOST_USES 4.f
 
-static void count_uses(const rc_level *level, float *uses) {
+void rc_count_uses(const rc_level *level, float *uses) {
+  memset(uses, 0, (size_t)level->width * (size_t)level->height * sizeof *uses);
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
       if (!rc_level_is_target(level, x, y)) continue;
@@ -23,9 +24,7 @@ static void count_uses(const rc_level *level, float *uses) {
       rc_place place =
           rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
       size_t at;
-      /* A target pixel covers 1 / area scale of the source's. */
-      if (rc_place_at(level, &place, &at))
-        uses[at] += 1.f / (place.ratio * place.ratio * place.ratio);
+      if (rc_place_at(level, &place, &at)) uses[at] += rc_use_of(&place);
     }
 }
 
@@ -73,8 +72,7 @@ recede_status rc_usage_prices(rc_context *context, const rc_level *level, float 
   averaging a = {level, price, NULL};
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, count, &a.across));
-  memset(price, 0, count * sizeof *price);
-  count_uses(level, price);
+  rc_count_uses(level, price);
   RC_TRY(rc_parallel(context, level->height, average_across, &a));
   RC_TRY(rc_parallel(context, level->height, average_along, &a));
   rc_release(context, mark);

@@ -18,6 +18,7 @@ import report
 import sheet
 from evaluation import PROJECT, Judge, load_cases
 from floors import load_floors
+from holes import load_holes
 from methods import ALL, ORACLE, OURS, PEERS, Failed, missing_programs, result
 
 DEFAULT = ['plane', 'frontal', 'paper', *PEERS, ORACLE]
@@ -38,6 +39,7 @@ def arguments():
     kind.add_argument('--photos', action='store_true', help='only the photos')
     kind.add_argument('--synthetic', action='store_true', help='only the rendered cases')
     kind.add_argument('--floors', action='store_true', help='floors of two textures instead')
+    kind.add_argument('--holes', action='store_true', help='more holes in the photos instead')
     parser.add_argument('--set', action='append', default=[], metavar='KEY=VALUE',
                         help="a developers' parameter for our methods; may be repeated")
     parser.add_argument('--seed', type=int, help='for our methods')
@@ -99,9 +101,12 @@ def main():
     problems = list(missing_programs(chosen.methods, chosen.binary))
     if problems:
         sys.exit('\n'.join(problems))
-    cases = load_floors(chosen.cases) if chosen.floors else [
-        case for case in load_cases(chosen.cases)
-        if case.is_photo and not chosen.synthetic or not case.is_photo and not chosen.photos]
+    if chosen.floors or chosen.holes:
+        cases = (load_floors if chosen.floors else load_holes)(chosen.cases)
+    else:
+        cases = [case for case in load_cases(chosen.cases)
+                 if case.is_photo and not chosen.synthetic
+                 or not case.is_photo and not chosen.photos]
     extra = [f'--set={setting}' for setting in chosen.set]
     extra += [] if chosen.seed is None else [f'--seed={chosen.seed}']
     scores = score_all(cases, chosen.methods, chosen.binary, extra, chosen.out, chosen.jobs)
