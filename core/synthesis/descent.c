@@ -21,7 +21,7 @@
 
 /* What repeats by nature may: bricks, tiles and planks correlate .77 to .99 with themselves a
  * period away, stones and lawns .15 to .55. */
-#define REPEATS .65f
+#define REPEATS .72f
 
 /* The finest level that is searched: what it settles on is composed. */
 static int last_searched(const rc_descent *e) { return rc_iterations_at(e, 0) ? 0 : 1; }
