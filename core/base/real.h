@@ -35,6 +35,12 @@ static inline float rc_exp2(float v) {
   return (float)(e * (double)power);
 }
 
+/* For qsort, of floats: the smallest first. */
+static inline int rc_by_value(const void *a, const void *b) {
+  float p = *(const float *)a, q = *(const float *)b;
+  return (p > q) - (p < q);
+}
+
 /* floorf and roundf without calls into the C library, which is what a compiler makes of them for
  * plain x86-64. rc_floor: |v| < 2^24. */
 static inline int rc_floor(float v) {

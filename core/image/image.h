@@ -30,6 +30,10 @@ recede_status rc_mask_new(rc_context *context, int width, int height, rc_mask *m
 rc_box rc_box_of(const rc_mask *mask, int wanted);
 /* So many px larger to each side, inside width x height. */
 rc_box rc_box_grown(rc_box box, int px, int width, int height);
+static inline int rc_longer_side(rc_box box) {
+  int width = box.x1 - box.x0, height = box.y1 - box.y0;
+  return width > height ? width : height;
+}
 static inline float *rc_pixel(const rc_image *image, int x, int y) {
   return image->data + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;
 }

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/real.h"
 #include "synthesis/places.h"
 
 /* What is beside the hole is every n-th pixel of that. */
@@ -45,11 +46,6 @@ static void take_samples(comparison *c) {
   }
 }
 
-static int by_value(const void *a, const void *b) {
-  float p = *(const float *)a, q = *(const float *)b;
-  return (p > q) - (p < q);
-}
-
 /* How much samples differ from those that share none of their pixels: the percentile of the
  * squares. Infinite where there are no such. */
 static float own_spread(const comparison *c, float *nearest) {
@@ -65,7 +61,7 @@ static float own_spread(const comparison *c, float *nearest) {
     if (isfinite(least)) nearest[count++] = least;
   }
   if (count < LEAST_SAMPLES) return INFINITY;
-  qsort(nearest, (size_t)count, sizeof *nearest, by_value);
+  qsort(nearest, (size_t)count, sizeof *nearest, rc_by_value);
   return nearest[count * OWN_PERCENTILE / 100];
 }
 
@@ -89,9 +85,9 @@ static void compare_row(void *user, int row, int thread) {
   const comparison *c = user;
   (void)thread;
   for (int column = 0; column < c->places.columns; column++) {
-    int x, y, i = 0;
+    int i = 0;
     rc_looks here;
-    if (!rc_look_at_place(&c->places, column, row, &x, &y, &here)) continue;
+    if (!rc_look_at_place(&c->places, column, row, &here)) continue;
     while (i < c->sample_count && distance_of(&here, &c->sample[i]) > c->most) i++;
     c->places.unlike[row * c->places.columns + column] = i == c->sample_count;
   }

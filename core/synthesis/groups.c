@@ -6,6 +6,7 @@
 
 #include "base/eigen.h"
 #include "base/memory.h"
+#include "base/real.h"
 
 /* A pixel's looks are those of the square around it; then it is what most of that square is. */
 #define HALF_PX 2
@@ -112,11 +113,6 @@ static float along(const rc_looks *looks, const double axis[RC_LOOKS]) {
   return (float)sum;
 }
 
-static int by_value(const void *a, const void *b) {
-  float p = *(const float *)a, q = *(const float *)b;
-  return (p > q) - (p < q);
-}
-
 /* Where two groups explain most of the variance of count sorted values (Otsu), and how much. */
 static float split_at(const float *value, size_t count, double *explained) {
   double n = (double)count, total = 0, square = 0, sum = 0, most = 0;
@@ -191,7 +187,7 @@ static recede_status ask_axes(rc_context *context, const finder *f,
     for (int i = 0; i < RC_LOOKS; i++) way.axis[i] = axes[i * RC_LOOKS + k];
     for (size_t i = 0; i < f->around->pixels; i++)
       if (is_beside(f, i)) value[count++] = along(&f->groups->looks[i], way.axis);
-    qsort(value, count, sizeof *value, by_value);
+    qsort(value, count, sizeof *value, rc_by_value);
     way.at = split_at(value, count, &way.explained);
     bool clear = ratio[k] >= CLEAR_RATIO;
     if (way.explained >= (clear ? LEAST_EXPLAINED_WHERE_CLEAR : LEAST_EXPLAINED))

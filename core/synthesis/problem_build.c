@@ -51,14 +51,8 @@ recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
 }
 
 rc_box rc_problem_box(const rc_target_summary *summary, int width, int height) {
-  rc_box box = summary->box;
-  int longer = box.x1 - box.x0 > box.y1 - box.y0 ? box.x1 - box.x0 : box.y1 - box.y0;
-  int margin = (int)fmin(MARGIN_OF_HOLE * longer + LEAST_MARGIN_PX, 1 << 20);
-  box.x0 = box.x0 - margin < 0 ? 0 : box.x0 - margin;
-  box.y0 = box.y0 - margin < 0 ? 0 : box.y0 - margin;
-  box.x1 = box.x1 + margin > width ? width : box.x1 + margin;
-  box.y1 = box.y1 + margin > height ? height : box.y1 + margin;
-  return box;
+  double margin = MARGIN_OF_HOLE * rc_longer_side(summary->box) + LEAST_MARGIN_PX;
+  return rc_box_grown(summary->box, (int)fmin(margin, 1 << 20), width, height);
 }
 
 /* The plane's w in the problem's coordinates, in units of its value at (x, y) of the whole. */

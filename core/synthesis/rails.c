@@ -60,13 +60,9 @@ static bool source_at(const void *user, int x, int y, float *value) {
 
 static rc_box all_of(const rc_mask *flags) { return (rc_box){0, 0, flags->width, flags->height}; }
 
-static int longer_side(rc_box box) {
-  return box.x1 - box.x0 > box.y1 - box.y0 ? box.x1 - box.x0 : box.y1 - box.y0;
-}
-
 static rc_box near_hole(const rc_mask *flags) {
   rc_box hole = rc_box_of(flags, RC_TARGET);
-  int margin = (int)(NEAR_HOLE * (float)longer_side(hole));
+  int margin = (int)(NEAR_HOLE * (float)rc_longer_side(hole));
   return rc_box_grown(hole, margin, flags->width, flags->height);
 }
 
@@ -242,7 +238,7 @@ static bool leaves_the_picture(const rc_chart *chart, const rc_mask *flags, rc_r
 /* So far joints must stay where they are: the longest line, or the hole. */
 static float how_far(const rc_crossing *lines, int count, const rc_mask *flags) {
   float most = 0;
-  if (!count) return (float)longer_side(rc_box_of(flags, RC_TARGET));
+  if (!count) return (float)rc_longer_side(rc_box_of(flags, RC_TARGET));
   for (int i = 0; i < count; i++) most = fmaxf(most, rc_crossing_length(&lines[i]));
   return most;
 }
@@ -253,24 +249,28 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
   int coarse = levels - 1, fine = coarse > FINER_BY ? coarse - FINER_BY : 0;
   const rc_mask *flags = &masks[coarse];
   rc_chart here = rc_chart_coarser(*chart, coarse);
-  view *all, *near;
+  view *v;
   rc_rails r;
+  bool told = *count > 0;
   *rails = (rc_rails){0};
   rc_block *mark = rc_mark(context);
-  RC_TRY(RC_NEW(context, 1, &all));
-  RC_TRY(RC_NEW(context, 1, &near));
-  set_view(&images[coarse], flags, here, all_of(flags), NULL, all);
-  set_view(&images[coarse], flags, here, near_hole(flags), NULL, near);
-  bool told = *count || (scan(near, &r) && leaves_the_picture(&here, flags, r));
-  if (*count) r = median_of(chart, lines, *count);
-  if (told && runs(all, r)) {
+  RC_TRY(RC_NEW(context, 1, &v));
+  if (told) {
+    r = median_of(chart, lines, *count);
+  } else {
+    set_view(&images[coarse], flags, here, near_hole(flags), NULL, v);
+    told = scan(v, &r) && leaves_the_picture(&here, flags, r);
+  }
+  if (told) set_view(&images[coarse], flags, here, all_of(flags), NULL, v);
+  if (told && runs(v, r)) {
     float reach_px = how_far(lines, *count, &masks[0]);
-    r = sharpened(all, r, reach_px / (float)(1 << coarse), COARSE_TURN);
+    r = sharpened(v, r, reach_px / (float)(1 << coarse), COARSE_TURN);
     set_view(&images[fine], &masks[fine], rc_chart_coarser(*chart, fine), all_of(&masks[fine]),
-             NULL, all);
-    *rails = sharpened(all, r, reach_px / (float)(1 << fine), FINE_TURN);
-  } else if (*count && repeats(near, r)) {
-    *count = 0;
+             NULL, v);
+    *rails = sharpened(v, r, reach_px / (float)(1 << fine), FINE_TURN);
+  } else if (*count) {
+    set_view(&images[coarse], flags, here, near_hole(flags), NULL, v);
+    if (repeats(v, r)) *count = 0;
   }
   rc_release(context, mark);
   return rc_poll(context);

@@ -14,7 +14,7 @@
 #define TOUCHING_PX 4
 /* Where nothing there differs by so much of white, as beside a plain wall, this counts: else any
  * grain would stand out. */
-#define LEAST_SEEN .03f
+#define LEAST_CONTRAST .03f
 /* What a spot's place is marked by; those around it, into which its edge fades, by 1. */
 #define SPOT 2
 
@@ -45,7 +45,7 @@ static float most_near_hole(const rc_places *p) {
         most = fmaxf(most, stands_out(p, x, y, &here));
     }
   if (most < 0) return INFINITY;
-  return TIMES_BESIDE * TIMES_BESIDE * fmaxf(most, LEAST_SEEN * LEAST_SEEN);
+  return TIMES_BESIDE * TIMES_BESIDE * fmaxf(most, LEAST_CONTRAST * LEAST_CONTRAST);
 }
 
 static void find_row(void *user, int row, int thread) {
@@ -54,7 +54,8 @@ static void find_row(void *user, int row, int thread) {
   for (int column = 0; column < f->places.columns; column++) {
     int x, y;
     rc_looks here;
-    if (rc_look_at_place(&f->places, column, row, &x, &y, &here) &&
+    rc_place_middle(&f->places, column, row, &x, &y);
+    if (rc_look_at_place(&f->places, column, row, &here) &&
         stands_out(&f->places, x, y, &here) > f->most)
       f->places.unlike[row * f->places.columns + column] = SPOT;
   }

@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/real.h"
 #include "synthesis/evaluate.h"
 
 /* Every second patch in x and y votes: a quarter of the work, and no score lost. */
@@ -17,11 +18,6 @@ typedef struct ballot {
   float scale;   /* of the costs: weights are its exponentials */
 } ballot;
 
-static int by_value(const void *a, const void *b) {
-  float p = *(const float *)a, q = *(const float *)b;
-  return (p > q) - (p < q);
-}
-
 /* The 75th percentile of a regular sample of the costs. */
 static float upper_quartile(const rc_level *level) {
   float sample[1024];
@@ -34,7 +30,7 @@ static float upper_quartile(const rc_level *level) {
       sample[count++] = level->cost[i];
   }
   if (!count) return 1.f;
-  qsort(sample, (size_t)count, sizeof *sample, by_value);
+  qsort(sample, (size_t)count, sizeof *sample, rc_by_value);
   return fmaxf(sample[count * 3 / 4], 1e-3f);
 }
 
