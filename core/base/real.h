@@ -1,5 +1,5 @@
-/* exp2 and log2 with the same bits on every machine: the C library's choose other code by
- * processor. Good to a float's precision. */
+/* What is done with floats. exp2 and log2 have the same bits on every machine: the C library's
+ * choose other code by processor. Good to a float's precision. */
 #ifndef RECEDE_BASE_REAL_H
 #define RECEDE_BASE_REAL_H
 

@@ -26,8 +26,8 @@
 #define OF_GUIDE .01f
 /* A seam costs what the copies differ by at both pixels, and so much in itself. */
 #define OF_SEAM .02f
-/* A source that other copies show, too, costs so much: of drawn stones .076 came again without a
- * price, .057 by .1, .043 by .4, where more of them were chips. */
+/* A source that other copies show, too, costs so much: of drawn stones .076 come again without a
+ * price, .049 by .05, .039 by .1; by .2 more of them are chips. */
 #define OF_USE .1f
 /* Capacities are integers, so many to a unit, and none may count more than MOST, but a copy that is
  * not allowed more than all seams of a pixel. */
@@ -142,21 +142,30 @@ static float cost_at(const cuts *c, rc_query *query, rc_copy copy, const colour 
   return price < RC_NO_COST ? price / unit + odd : price;
 }
 
+/* How many pixels here and around have the copy. */
+static int count_own(const cuts *c, rc_copy copy, int x, int y) {
+  int count = 0;
+  for (int j = y - 1; j <= y + 1; j++)
+    for (int i = x - 1; i <= x + 1; i++)
+      count += c->part[grid_at(c, i, j)] &&
+               rc_same_copy(c->level->field[rc_level_at(c->level, i, j)], copy);
+  return count;
+}
+
 /* What it costs that others show the copy's source at (x, y), too. */
-static float price_of_use(const cuts *c, rc_copy copy, int x, int y, bool is_own) {
+static float price_of_use(const cuts *c, rc_copy copy, int x, int y) {
   const rc_level *level = c->level;
   rc_place place = rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
   size_t at;
   if (!c->uses || !rc_place_at(level, &place, &at)) return 0.f;
-  /* Copies of other sizes leave gaps and heaps, so the mean of 3 x 3. */
   int sx = (int)(at % (size_t)level->width), sy = (int)(at / (size_t)level->width);
   float uses = 0;
   for (int j = -1; j <= 1; j++)
     for (int i = -1; i <= 1; i++)
       if (rc_inside(level->width, level->height, sx + i, sy + j))
         uses += c->uses[(size_t)(sy + j) * (size_t)level->width + (size_t)(sx + i)];
-  uses = uses / 9 - (is_own ? rc_use_of(&place) : 0.f);
-  return OF_USE * fminf(fmaxf(uses, 0.f), 1.f);
+  uses -= (float)count_own(c, copy, x, y) * rc_use_of(&place);
+  return OF_USE * fminf(fmaxf(uses / 9, 0.f), 1.f);
 }
 
 static void look_at_own(cuts *c, int x, int y) {
@@ -231,6 +240,7 @@ static recede_status expand(rc_context *context, cuts *c, rc_copy copy, bool *ch
   size_t count = (size_t)g->width * (size_t)g->height;
   rc_query query;
   rc_query_init(&query);
+  /* As they are before: what this expansion itself changes is not seen. */
   if (c->uses) rc_count_uses(level, c->uses);
   memset(g->end, 0, count * sizeof *g->end);
   for (int k = 0; k < 4; k++) memset(g->beside[k], 0, count * sizeof *g->beside[k]);
@@ -241,9 +251,8 @@ static recede_status expand(rc_context *context, cuts *c, rc_copy copy, bool *ch
       c->other[at] = sample(level, copy, x, y);
       c->cost_of[at] = cost_at(c, &query, copy, &c->other[at], x, y);
       rc_copy own = level->field[rc_level_at(level, x, y)];
-      bool same = rc_same_copy(own, copy);
-      int32_t taken = fixed(c->cost_of[at] + price_of_use(c, copy, x, y, same));
-      int32_t kept = fixed(c->cost[at] + price_of_use(c, own, x, y, true));
+      int32_t taken = fixed(c->cost_of[at] + price_of_use(c, copy, x, y));
+      int32_t kept = fixed(c->cost[at] + price_of_use(c, own, x, y));
       g->end[at] += c->cost_of[at] < RC_NO_COST ? taken - kept : FORBIDDEN;
     }
   for (int y = level->box.y0; y < level->box.y1; y++)

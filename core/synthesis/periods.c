@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "base/real.h"
 
 /* Lags up to this many px at the coarsest level, and no more than a third of the picture there. */
 #define MOST_LAG_PX 64
@@ -79,6 +80,19 @@ static float vertex(float before, float at, float after) {
   return bend < 0.f ? fminf(fmaxf(.5f * (before - after) / bend, -.5f), .5f) : 0.f;
 }
 
+/* By how much the correlation at a lag is more than the least on the way there: shading, which
+ * drifts, and what runs along stay alike all the way. */
+static float rise_to(const correlation *c, int dx, int dy) {
+  int steps = abs(dx) > dy ? abs(dx) : dy;
+  float own = value_at(c, dx, dy), least = own;
+  for (int i = 1; i < steps; i++) {
+    float part = (float)i / (float)steps;
+    least =
+        fminf(least, value_at(c, (int)rc_round(part * (float)dx), (int)rc_round(part * (float)dy)));
+  }
+  return own - least;
+}
+
 static int stronger_first(const void *a, const void *b) {
   const peak *p = a, *q = b;
   if (p->value != q->value) return p->value < q->value ? 1 : -1;
@@ -86,20 +100,20 @@ static int stronger_first(const void *a, const void *b) {
 }
 
 static recede_status collect(rc_context *context, const correlation *c,
-                             rc_copy periods[RC_MOST_PERIODS], int *count, float *strongest) {
+                             rc_copy periods[RC_MOST_PERIODS], int *count, float *repetition) {
   peak *peaks;
   int found = 0, most = (c->lag + 1) * (2 * c->lag + 1);
   RC_TRY(RC_NEW(context, most, &peaks));
   for (int dy = 0; dy <= c->lag; dy++)
     for (int dx = -c->lag; dx <= c->lag; dx++) {
       if (!is_peak(c, dx, dy)) continue;
+      if (abs(dx) < c->lag && dy < c->lag) *repetition = fmaxf(*repetition, rise_to(c, dx, dy));
       float own = value_at(c, dx, dy);
       peaks[found++] =
           (peak){own, (float)dx + vertex(value_at(c, dx - 1, dy), own, value_at(c, dx + 1, dy)),
                  (float)dy + vertex(value_at(c, dx, dy - 1), own, value_at(c, dx, dy + 1))};
     }
   qsort(peaks, (size_t)found, sizeof *peaks, stronger_first);
-  if (found) *strongest = peaks[0].value;
   for (int i = 0; i < found && *count + 1 < RC_MOST_PERIODS; i++) {
     periods[(*count)++] = (rc_copy){peaks[i].x, peaks[i].y, 0.f};
     periods[(*count)++] = (rc_copy){-peaks[i].x, -peaks[i].y, 0.f};
@@ -115,14 +129,14 @@ static float trait_of(const rc_level *level, uint32_t pixel) {
 }
 
 recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key,
-                              rc_copy periods[RC_MOST_PERIODS], int *count, float *strongest) {
+                              rc_copy periods[RC_MOST_PERIODS], int *count, float *repetition) {
   size_t pixels = (size_t)level->width * (size_t)level->height;
   int sources = rc_level_all_sources(level).end;
   int third = (level->width < level->height ? level->width : level->height) / 3;
   correlation c = {.level = level, .flat = rc_chart_flat(level->chart)};
   float *trait;
   int32_t *points;
-  *count = 0, *strongest = 0.f;
+  *count = 0, *repetition = 0.f;
   c.lag = third < MOST_LAG_PX ? third : MOST_LAG_PX;
   if (sources < LEAST_SHARED || c.lag <= LEAST_LAG_PX) return RECEDE_OK;
   rc_block *mark = rc_mark(context);
@@ -135,7 +149,7 @@ recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64
         level->order[rc_below((uint32_t)rc_random(key, (uint32_t)i, 0, 0), (uint32_t)sources)];
   c.trait = trait, c.points = points;
   RC_TRY(rc_parallel(context, c.lag + 1, correlate_row, &c));
-  RC_TRY(collect(context, &c, periods, count, strongest));
+  RC_TRY(collect(context, &c, periods, count, repetition));
   rc_release(context, mark);
   return RECEDE_OK;
 }

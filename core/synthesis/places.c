@@ -39,15 +39,10 @@ bool rc_look_at(const rc_places *places, int x, int y, rc_looks *looks) {
   return rc_look(places->image, places->flags, x, y, RC_LOOKS_PX, looks);
 }
 
-void rc_place_middle(const rc_places *p, int column, int row, int *x, int *y) {
-  *x = column * p->step + p->step / 2, *y = row * p->step + p->step / 2;
-  if (*x >= p->flags->width) *x = p->flags->width - 1;
-  if (*y >= p->flags->height) *y = p->flags->height - 1;
-}
-
 bool rc_look_at_place(const rc_places *p, int column, int row, rc_looks *looks) {
-  int x, y;
-  rc_place_middle(p, column, row, &x, &y);
+  int x = column * p->step + p->step / 2, y = row * p->step + p->step / 2;
+  if (x >= p->flags->width) x = p->flags->width - 1;
+  if (y >= p->flags->height) y = p->flags->height - 1;
   return *rc_flag(p->flags, x, y) & RC_KNOWN && rc_look_at(p, x, y, looks);
 }
 

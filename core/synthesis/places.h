@@ -26,7 +26,6 @@ recede_status rc_places_new(rc_context *context, const rc_image *images, const r
                             int levels, rc_places *places);
 /* What the pixel looks like, that is, the square around it. False: not enough of it is known. */
 bool rc_look_at(const rc_places *places, int x, int y, rc_looks *looks);
-void rc_place_middle(const rc_places *places, int column, int row, int *x, int *y);
 /* What the middle of a place looks like. False: it is not known. */
 bool rc_look_at_place(const rc_places *places, int column, int row, rc_looks *looks);
 /* Takes RC_SOURCE from what may not be copied, at all levels, unless too little of the hole's own

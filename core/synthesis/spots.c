@@ -52,11 +52,9 @@ static void find_row(void *user, int row, int thread) {
   const finder *f = user;
   (void)thread;
   for (int column = 0; column < f->places.columns; column++) {
-    int x, y;
     rc_looks here;
-    rc_place_middle(&f->places, column, row, &x, &y);
     if (rc_look_at_place(&f->places, column, row, &here) &&
-        stands_out(&f->places, x, y, &here) > f->most)
+        stands_out(&f->places, column, row, &here) > f->most)
       f->places.unlike[row * f->places.columns + column] = SPOT;
   }
 }

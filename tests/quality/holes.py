@@ -65,6 +65,7 @@ def fits(mask, plane):
 
 def draw(root, index, folder):
     """One hole into the folder, as make_photo_cases.py writes its cases."""
+    cv2.setNumThreads(1)
     name, kind = list(PHOTOS)[index // len(KINDS)], KINDS[index % len(KINDS)]
     level, polygon = PHOTOS[name]
     truth = cv2.imread(str(root / 'photo' / f'{name}.jpg'))
