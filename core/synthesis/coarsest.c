@@ -190,7 +190,7 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   double misfit;
   rc_trial best;
   if (e->params->engine_periods)
-    RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count, &e->repetition));
+    RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count, &e->repeats));
   /* Where lines cross the hole there are things that go on as a whole. But whole copies that break
    * lines fit well, and must not win over those that continue them. */
   int with_lines = e->line_count ? half : 0, on_rails = rc_runs(&e->rails) ? half : 0;

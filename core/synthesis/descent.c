@@ -19,10 +19,6 @@
 #define MOST_CUT 12000
 #define MOST_CUT_BOX 30000
 
-/* What repeats by nature may: the correlation of bricks, tiles and planks with themselves rises
- * again by .9 to 1.6, that of stones, lawns, sand and roads by .1 to .8. */
-#define REPEATS .85f
-
 /* The finest level that is searched: what it settles on is composed. */
 static int last_searched(const rc_descent *e) { return rc_iterations_at(e, 0) ? 0 : 1; }
 
@@ -58,8 +54,7 @@ static recede_status search_level(rc_context *context, rc_descent *e, int expone
     RC_TRY(rc_iterate(context, e, exponent, 0, 0, p.total, &p, level, &scratch));
   }
   if (may_cut(e) && exponent == e->cut_level)
-    RC_TRY(rc_cut_copies(context, e->kernels, e->params->engine_usage && e->repetition < REPEATS,
-                         level));
+    RC_TRY(rc_cut_copies(context, e->kernels, e->params->engine_usage && !e->repeats, level));
   return exponent == last_searched(e) ? rc_settle(context, e, level, &scratch) : RECEDE_OK;
 }
 
