@@ -164,7 +164,7 @@ static float price_of_use(const cuts *c, rc_copy copy, int x, int y) {
     for (int i = -1; i <= 1; i++)
       if (rc_inside(level->width, level->height, sx + i, sy + j))
         uses += c->uses[(size_t)(sy + j) * (size_t)level->width + (size_t)(sx + i)];
-  uses -= (float)count_own(c, copy, x, y) * rc_use_of(&place);
+  uses -= (float)count_own(c, copy, x, y) * rc_use_of(level, &place);
   return OF_USE * fminf(fmaxf(uses / 9, 0.f), 1.f);
 }
 

@@ -13,13 +13,11 @@
 #define FREE_USES 1.f
 #define PRICE_OF_USE .2f
 #define MOST_USES 4.f
-/* The search counts target pixels, and those that magnify for more, which a source is used up by
- * sooner: by the source's pixels instead five photos score 59 and 61, not 65; cases are the same.
- */
-#define SEARCH_COUNTS_BY (-1)
 
-/* Adds for each pixel of the field use^power to its source. */
-static void count_uses(const rc_level *level, int power, float *uses) {
+/* Adds for each pixel of the field what it shows of its source, or for the search the inverse, as
+ * of flat copies: what is magnified is used up sooner, for it is blurred, too. By what it shows
+ * five photos score 59 and 61 instead of 65, the cases the same. */
+static void count_uses(const rc_level *level, bool for_search, float *uses) {
   memset(uses, 0, (size_t)level->width * (size_t)level->height * sizeof *uses);
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
@@ -30,12 +28,12 @@ static void count_uses(const rc_level *level, int power, float *uses) {
           rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
       size_t at;
       if (!rc_place_at(level, &place, &at)) continue;
-      float use = rc_use_of(&place);
-      uses[at] += power > 0 ? use : 1.f / use;
+      uses[at] +=
+          for_search ? 1.f / (place.ratio * place.ratio * place.ratio) : rc_use_of(level, &place);
     }
 }
 
-void rc_count_uses(const rc_level *level, float *uses) { count_uses(level, 1, uses); }
+void rc_count_uses(const rc_level *level, float *uses) { count_uses(level, false, uses); }
 
 typedef struct averaging {
   const rc_level *level;
@@ -81,7 +79,7 @@ recede_status rc_usage_prices(rc_context *context, const rc_level *level, float 
   averaging a = {level, price, NULL};
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, count, &a.across));
-  count_uses(level, SEARCH_COUNTS_BY, price);
+  count_uses(level, true, price);
   RC_TRY(rc_parallel(context, level->height, average_across, &a));
   RC_TRY(rc_parallel(context, level->height, average_along, &a));
   rc_release(context, mark);

@@ -5,16 +5,17 @@
 
 #include "synthesis/level.h"
 
-/* How many of the source's pixels a target pixel shows: the area scale. */
-static inline float rc_use_of(const rc_place *place) {
-  return place->ratio * place->ratio * place->ratio;
+/* How many of the source's pixels a target pixel shows: the area scale, of raised copies that of
+ * their one scale. */
+static inline float rc_use_of(const rc_level *level, const rc_place *place) {
+  float scale = place->ratio / place->mismatch;
+  return level->chart.raised ? scale * scale : scale * scale * scale;
 }
 /* uses, level->width * level->height: how often the field shows each pixel now, 1 on the mean for
  * what one copy shows; those of other scales leave gaps and heaps. */
 void rc_count_uses(const rc_level *level, float *uses);
-/* What the search pays. */
-/* price, level->width * level->height, byte^2: what a copy from each pixel costs more, by how often
- * the field takes the pixels around it now. */
+/* price, level->width * level->height, byte^2: what a copy from each pixel costs the search more,
+ * by how often the field takes the pixels around it now. */
 recede_status rc_usage_prices(rc_context *context, const rc_level *level, float *price);
 
 #endif
