@@ -21,7 +21,7 @@ typedef struct rc_descent {
   rc_traits traits[RC_MAX_LEVELS];
   rc_copy periods[RC_MOST_PERIODS]; /* px of the coarsest level */
   int period_count;
-  bool repeats;
+  bool repeats;                     /* as rc_find_periods says */
   rc_crossing lines[RC_MOST_LINES]; /* px of the finest level */
   int line_count;
   rc_rails rails;

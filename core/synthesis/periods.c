@@ -86,9 +86,8 @@ static float vertex(float before, float at, float after) {
   return bend < 0.f ? fminf(fmaxf(.5f * (before - after) / bend, -.5f), .5f) : 0.f;
 }
 
-/* Whether a peak's correlation, or what it rises by from the least on the way there, says that the
- * texture repeats. */
-static bool rises_again(const correlation *c, int dx, int dy) {
+/* A high correlation may be shading's alone, which drifts; so its rise is asked, too. */
+static bool tells_repetition(const correlation *c, int dx, int dy) {
   int steps = abs(dx) > dy ? abs(dx) : dy;
   float own = value_at(c, dx, dy), least = own;
   for (int i = 1; i < steps; i++) {
@@ -113,7 +112,7 @@ static recede_status collect(rc_context *context, const correlation *c,
   for (int dy = 0; dy <= c->lag; dy++)
     for (int dx = -c->lag; dx <= c->lag; dx++) {
       if (!is_peak(c, dx, dy)) continue;
-      *repeats = *repeats || rises_again(c, dx, dy);
+      *repeats = *repeats || tells_repetition(c, dx, dy);
       float own = value_at(c, dx, dy);
       peaks[found++] =
           (peak){own, (float)dx + vertex(value_at(c, dx - 1, dy), own, value_at(c, dx + 1, dy)),

@@ -124,8 +124,15 @@ def put(made, place):
             raise
 
 
-def drawn_cases(script, draw, count):
-    """The folder that draw(root, index, folder) has drawn its cases into, made once."""
+def drawn_cases(script, draw, count, wanted=()):
+    """Folders of the cases that draw(root, index, folder) draws, once; every one, or those whose
+    name begins with one of the wanted words.
+    """
+    return [folder for folder in sorted(drawn_folder(script, draw, count).iterdir())
+            if folder.name.startswith(tuple(wanted or ('',)))]
+
+
+def drawn_folder(script, draw, count):
     root, script = working_folder(), Path(script)
     cases = root / f'{script.stem}-{digest(root / "make_cases.py", script)}'
     if cases.exists():

@@ -128,11 +128,9 @@ def draw(root, index, folder):
 
 def load_streets(wanted=()):
     """Every hole, or those whose name begins with one of the wanted words."""
-    cases = drawn_cases(__file__, draw, len(STREETS))
     found = []
-    for folder in sorted(cases.iterdir()):
+    for folder in drawn_cases(__file__, draw, len(STREETS), wanted):
         meta = json.loads((folder / 'meta.json').read_text())
-        if folder.name.startswith(tuple(wanted or ('',))):
-            found.append(Case(folder.name, folder, 0., np.array(meta['line']),
-                              [f'--fov={meta["fov"]}']))
+        found.append(Case(folder.name, folder, 0., np.array(meta['line']),
+                          [f'--fov={meta["fov"]}']))
     return found
