@@ -12,6 +12,7 @@ import sys
 import tempfile
 
 from evaluation import CACHE, digest
+from oracle import oracle
 
 # Options of `recede fill` besides the case's orientation.
 OURS = {
@@ -131,9 +132,9 @@ def peer_result(method, case):
 def result(method, case, binary, extra, folder):
     """Fills the case's hole: path of the picture and CPU seconds. May raise Failed."""
     if method == ORACLE:
-        path = case.folder / 'oracle.png'
-        if not path.exists():
-            raise Failed('a photo has no oracle')
+        path = oracle(case)
+        if path is None:
+            raise Failed('its plane shows no other piece of that scale')
         return path, 0.0
     if method in PEERS:
         return peer_result(method, case)
