@@ -6,13 +6,13 @@ around it, and healed: its brightness is led over to that of the border. It is r
 but its border, where tiles and cracks do not go on; holes as wide as the plane have none.
 """
 import os
+from pathlib import Path
 
 import cv2
 import numpy as np
 
 from evaluation import CACHE, digest
 
-STEP_PX = 1  # of the ways that are tried
 RING_PX = 3  # around the hole, where the fit is measured
 
 
@@ -21,7 +21,7 @@ def oracle(case):
     if not case.is_photo:
         return case.folder / 'oracle.png'
     key = digest(case.folder / 'truth.png', case.folder / 'mask.png', case.folder / 'valid.png',
-                 case.line, __file__)
+                 case.line, Path(__file__))
     path = CACHE / 'oracles' / f'{key}.png'
     if not path.exists():
         picture = moved_truth(case)
@@ -62,7 +62,7 @@ def ways_to_known(case, known, hole):
     rows, columns = hole
     a, b, _ = case.line
     along = np.array([b, -a]) / np.hypot(a, b) if a or b else np.array([1, 0])
-    for length in range(STEP_PX, width, STEP_PX):
+    for length in range(1, width):
         for dx, dy in np.rint([length * along, -length * along]).astype(int):
             x, y = columns + dx, rows + dy
             if (min(x.min(), y.min()) >= 0 and x.max() < width and y.max() < height
