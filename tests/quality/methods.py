@@ -11,8 +11,10 @@ import subprocess
 import sys
 import tempfile
 
+import cv2
+
 from evaluation import CACHE, digest
-from oracle import oracle
+from oracle import moved_truth
 
 # Options of `recede fill` besides the case's orientation.
 OURS = {
@@ -129,16 +131,23 @@ def peer_result(method, case):
     return path, float(times.read_text())
 
 
+def oracle_result(case, path):
+    if not case.is_photo:
+        return case.folder / 'oracle.png'
+    picture = moved_truth(case)
+    if picture is None:
+        raise Failed('its plane shows no other piece of that scale')
+    cv2.imwrite(str(path), picture)
+    return path
+
+
 def result(method, case, binary, extra, folder):
     """Fills the case's hole: path of the picture and CPU seconds. May raise Failed."""
+    path = folder / f'{case.name}.{method}.png'
     if method == ORACLE:
-        path = oracle(case)
-        if path is None:
-            raise Failed('its plane shows no other piece of that scale')
-        return path, 0.0
+        return oracle_result(case, path), 0.0
     if method in PEERS:
         return peer_result(method, case)
-    path = folder / f'{case.name}.{method}.png'
     path.unlink(missing_ok=True)
     return path, run(recede_command(binary, method, case, path, extra))['cpu']
 
