@@ -4,6 +4,7 @@ import statistics
 from methods import ORACLE, PEERS
 
 STEEP_DEG = 40.0  # from here on a fill without perspective fails
+FULL_MARKS = 100.0
 TERMS = ['regular', 'sharpness', 'seam']
 # Rivals for the win rate; --frontal is our own engine without perspective.
 RIVALS = [*PEERS, 'frontal']
@@ -35,23 +36,36 @@ def median_term(found, term):
     return statistics.median(values) if values else None
 
 
+def best_rival(found, method):
+    """The best score of the rivals that were measured, None where none was."""
+    return max((found[name]['score'] for name in RIVALS if name in found and name != method),
+               default=None)
+
+
+def duels(cases, scores, method):
+    """[(case, the method's score, its best rival's)] of the cases where both were measured."""
+    pairs = [(case, scores[case.name].get(method), best_rival(scores[case.name], method))
+             for case in cases]
+    return [(case, own['score'], rival) for case, own, rival in pairs
+            if own is not None and rival is not None]
+
+
 def wins(cases, scores, method):
-    """Cases won against the best rival, and cases compared; rivals are those measured."""
-    won = compared = 0
-    for case in cases:
-        found = scores[case.name]
-        rivals = [found[name]['score'] for name in RIVALS if name in found and name != method]
-        if method in found and rivals:
-            compared += 1
-            won += found[method]['score'] > max(rivals)
-    return won, compared
+    """Cases won against the best rival, and cases compared."""
+    compared = duels(cases, scores, method)
+    return sum(own > rival for _, own, rival in compared), len(compared)
+
+
+def groups(cases):
+    """Rendered cases, the steep ones of them, photos."""
+    rendered = [case for case in cases if not case.is_photo]
+    return (rendered, [case for case in rendered if case.slant >= STEEP_DEG],
+            [case for case in cases if case.is_photo])
 
 
 def figures(cases, scores, methods):
     """{method: the summary's numbers}."""
-    rendered = [case for case in cases if not case.is_photo]
-    steep = [case for case in rendered if case.slant >= STEEP_DEG]
-    photos = [case for case in cases if case.is_photo]
+    rendered, steep, photos = groups(cases)
     out = {}
     for method in methods:
         def of(group):
@@ -83,6 +97,27 @@ def summary(cases, scores, methods):
              row['changed_outside']]
             for method, row in figures(cases, scores, methods).items()]
     return table(header, rows)
+
+
+def rivalry(name, cases, scores, method):
+    """A sentence on what it wins and loses against the best rival, and how much can be won at all:
+    where a rival has full marks nobody has more. Empty where nothing can be compared.
+    """
+    compared = duels(cases, scores, method)
+    won = sum(own > rival for _, own, rival in compared)
+    lost = [f'{case.short()} {own:.0f}:{rival:.0f}' for case, own, rival in compared if own < rival]
+    full = sum(rival >= FULL_MARKS for _, _, rival in compared)
+    if not compared:
+        return ''
+    return (f'{method}, {name}: alone the best in {won} of {len(compared)}, shares the best score '
+            f'in {len(compared) - won - len(lost)}, loses {len(lost)} ({", ".join(lost)}); a rival '
+            f'has full marks in {full}, so that {len(compared) - full} can be won alone\n')
+
+
+def rivalries(cases, scores, method):
+    _, steep, photos = groups(cases)
+    return (rivalry(f'slant >= {STEEP_DEG:.0f} deg', steep, scores, method) +
+            rivalry('photos', photos, scores, method))
 
 
 def surface_choice(scores):

@@ -112,6 +112,7 @@ def main():
     scores = score_all(cases, chosen.methods, chosen.binary, extra, chosen.out, chosen.jobs)
     print(report.per_case(cases, scores, chosen.methods))
     print(report.summary(cases, scores, chosen.methods))
+    print(report.rivalries(cases, scores, chosen.methods[0]), end='')
     print(report.surface_choice(scores), end='')
     (chosen.out / 'scores.json').write_text(json.dumps(
         {'settings': extra, 'summary': report.figures(cases, scores, chosen.methods),
