@@ -26,7 +26,7 @@ def moved_truth(case):
         return cv2.absdiff(truth[rows + way[1], columns + way[0]], truth[rows, columns]).mean()
     dx, dy = min(ways, key=misfit)
     x, y, width, height = cv2.boundingRect(mask)
-    centre = x + (width - 1) // 2, y + (height - 1) // 2  # so seamlessClone moves nothing
+    centre = x + width // 2, y + height // 2  # so seamlessClone moves nothing
     healed = cv2.seamlessClone(np.roll(truth, (-dy, -dx), (0, 1)), truth, mask, centre,
                                cv2.NORMAL_CLONE)
     return np.where(mask[..., None] > 0, healed, case.image('input'))
