@@ -43,7 +43,8 @@ def oracle_of_photos(tap, folder):
     tap.check((found[outside] == case.image('input')[outside]).all(),
               'an oracle changes nothing outside the hole')
     missed = np.abs(found - truth)[HOLE].mean()
-    tap.check(missed < 2, 'where the photo repeats, its oracle is the truth', f'{missed:.2f} of 255')
+    tap.check(missed < 2, 'where the photo repeats, its oracle is the truth',
+              f'{missed:.2f} of 255')
 
     plane[:, 245:] = False
     found = moved_truth(repeating_photo(folder, HOLE, plane)).astype(float)
@@ -62,8 +63,8 @@ def sentence_on_rivals(tap):
         scores[name] = {'plane': {'score': ours}, 'shiftmap': {'score': theirs},
                         'gmic-patch': {'score': 20}}
     said = rivalry('photos', cases, scores, 'plane')
-    tap.check(said == 'plane, photos: alone the best in 1 of 3, shares the best score in 1, loses 1 '
-              '(c 70:100); a rival has full marks in 2, so that 1 can be won alone\n',
+    tap.check(said == 'plane, photos: alone the best in 1 of 3, shares the best score in 1, '
+              'loses 1 (c 70:100); a rival has full marks in 2, so that 1 can be won alone\n',
               'wins, ties, losses and what can be won are told', said.strip())
     tap.check(rivalry('photos', cases, scores, 'oracle') == '', 'nothing measured, nothing told')
 
