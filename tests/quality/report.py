@@ -104,14 +104,15 @@ def rivalry(name, cases, scores, method):
     where a rival has full marks nobody has more. Empty where nothing can be compared.
     """
     compared = duels(cases, scores, method)
-    won = sum(own > rival for _, own, rival in compared)
+    won, of = wins(cases, scores, method)
     lost = [f'{case.short()} {own:.0f}:{rival:.0f}' for case, own, rival in compared if own < rival]
     full = sum(rival >= FULL_MARKS for _, _, rival in compared)
     if not compared:
         return ''
-    return (f'{method}, {name}: alone the best in {won} of {len(compared)}, shares the best score '
-            f'in {len(compared) - won - len(lost)}, loses {len(lost)} ({", ".join(lost)}); a rival '
-            f'has full marks in {full}, so that {len(compared) - full} can be won alone\n')
+    named = f' ({", ".join(lost)})' if lost else ''
+    return (f'{method}, {name}: alone the best in {won} of {of}, shares the best score in '
+            f'{of - won - len(lost)}, loses {len(lost)}{named}; a rival has full marks in {full}, '
+            f'so that {of - full} can be won alone\n')
 
 
 def rivalries(cases, scores, method):
