@@ -14,6 +14,11 @@
  * everywhere: six such scenes -.24 .. .00, ten photos whose light drifts .03 .. .22. */
 #define LEAST_EXPLAINED_NEARBY .01
 #define PLACES 8
+/* And beside the hole, so much of its longer side away, it must not do this harm: a dark pier
+ * between bright water is light to both sides by a trend, but dark by itself. Photos whose light
+ * drifts -.01 .. .23, a pier between water and a dune below the sky -.15 and -.21. */
+#define LEAST_EXPLAINED_BESIDE -.1
+#define BESIDE_OF_HOLE .25
 /* Enough for six decimals of a trend. */
 #define MOST_SAMPLES 400000
 #define TERMS RC_TONE_TERMS
@@ -43,8 +48,8 @@ static void add(sums *s, const double terms[TERMS], const float *pixel, int chan
   }
 }
 
-static int sample_step(const rc_image *image) {
-  double area = (double)image->width * image->height;
+static int sample_step(const rc_box *box) {
+  double area = (double)(box->x1 - box->x0) * (box->y1 - box->y0);
   return area > MOST_SAMPLES ? (int)ceil(sqrt(area / MOST_SAMPLES)) : 1;
 }
 
@@ -55,8 +60,8 @@ static bool is_sample(const rc_mask *flags, const rc_band *band, int x, int y) {
 static void gather(const rc_image *image, const rc_mask *flags, const rc_band *band, rc_tone *tone,
                    sums *s) {
   double terms[TERMS];
-  int step = sample_step(image);
-  rc_box *box = &tone->box;
+  rc_box all = {0, 0, image->width, image->height}, *box = &tone->box;
+  int step = sample_step(&all);
   *box = (rc_box){image->width, image->height, 0, 0};
   for (int y = 0; y < image->height; y += step)
     for (int x = 0; x < image->width; x += step) {
@@ -112,18 +117,17 @@ static double value_of(const rc_tone *tone, int channel, const double terms[TERM
   return value;
 }
 
-/* A part of the sources' box: sums over its samples. */
+/* A part of a box: sums over its samples. */
 typedef struct place {
   double count, value[3], trend[3];
 } place;
 
 static void sum_places(const rc_image *image, const rc_mask *flags, const rc_band *band,
-                       const rc_tone *tone, place places[PLACES][PLACES]) {
-  const rc_box *box = &tone->box;
-  int step = sample_step(image);
+                       const rc_box *box, const rc_tone *tone, place places[PLACES][PLACES]) {
+  int step = sample_step(box);
   double terms[TERMS];
-  for (int y = 0; y < image->height; y += step)
-    for (int x = 0; x < image->width; x += step) {
+  for (int y = box->y0; y < box->y1; y += step)
+    for (int x = box->x0; x < box->x1; x += step) {
       if (!is_sample(flags, band, x, y)) continue;
       place *p = &places[(y - box->y0) * PLACES / (box->y1 - box->y0)]
                         [(x - box->x0) * PLACES / (box->x1 - box->x0)];
@@ -144,12 +148,13 @@ static void add_difference(const place *p, const place *q, int channels, double 
   }
 }
 
-static bool explains_what_is_nearby(const rc_image *image, const rc_mask *flags,
-                                    const rc_band *band, const rc_tone *tone) {
+/* Part of the differences between neighbouring places of a box that the trend explains. */
+static double explained_nearby(const rc_image *image, const rc_mask *flags, const rc_band *band,
+                               const rc_box *box, const rc_tone *tone) {
   place places[PLACES][PLACES];
   double all = 0, left = 0;
   memset(places, 0, sizeof places);
-  sum_places(image, flags, band, tone, places);
+  sum_places(image, flags, band, box, tone, places);
   for (int y = 0; y < PLACES; y++)
     for (int x = 0; x < PLACES; x++) {
       if (x + 1 < PLACES)
@@ -157,7 +162,16 @@ static bool explains_what_is_nearby(const rc_image *image, const rc_mask *flags,
       if (y + 1 < PLACES)
         add_difference(&places[y][x], &places[y + 1][x], tone->channels, &all, &left);
     }
-  return all - left >= LEAST_EXPLAINED_NEARBY * all;
+  return all > 0 ? (all - left) / all : 0;
+}
+
+static bool explains_what_is_nearby(const rc_image *image, const rc_mask *flags,
+                                    const rc_band *band, const rc_tone *tone) {
+  rc_box hole = rc_box_of(flags, RC_TARGET);
+  int px = (int)(BESIDE_OF_HOLE * rc_longer_side(hole));
+  rc_box beside = rc_box_grown(hole, px, flags->width, flags->height);
+  return explained_nearby(image, flags, band, &tone->box, tone) >= LEAST_EXPLAINED_NEARBY &&
+         explained_nearby(image, flags, NULL, &beside, tone) >= LEAST_EXPLAINED_BESIDE;
 }
 
 void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *band, bool drift,

@@ -3,8 +3,8 @@
 
 test_quality.py RECEDE
 
-On planes drawn from the free textures of tests/data always; on some cases of the evaluation data,
-by its own yardstick, where it lies beside the checkout.
+On planes drawn from the free textures of tests/data and on a photo always; on some cases of the
+evaluation data, by its own yardstick, where it lies beside the checkout.
 """
 import os
 import sys
@@ -29,6 +29,12 @@ SLICES = 3           # of the hole, from near to far
 # Steep ones: bricks, roof tiles, gravel. Few, because a test may not take minutes; all of them are
 # scored by `./dev bench quality`.
 CASES = ['013', '024', '029']
+
+
+# A photo of a dark pier, brighter water beside it, and nobody says which of them is the plane.
+PIER = Path(__file__).resolve().parents[2] / 'docs' / 'images' / 'pier.jpg'
+PIER_HORIZON = '--horizon=0,362,1200,362'
+PIER_HOLE = np.s_[452:656, 495:663]
 
 
 def detail_octave(picture, region):
@@ -64,8 +70,7 @@ def fill(binary, folder, truth, mask, *options):
     image, hole_file, out = (folder / name for name in ('image.png', 'mask.png', 'out.png'))
     cv2.imwrite(str(image), np.where(mask[..., None] > 0, 0, truth).astype(np.uint8))
     cv2.imwrite(str(hole_file), mask)
-    run([binary, 'fill', image, '--mask', hole_file, '-o', out, '--force', *VIEW.options(),
-         *options])
+    run([binary, 'fill', image, '--mask', hole_file, '-o', out, '--force', *options])
     return cv2.imread(str(out))
 
 
@@ -75,7 +80,7 @@ def drawn_planes(tap, binary, folder):
     for name in DRAWN:
         truth = draw(name, VIEW)
         for method in ('plane', 'paper', 'kwatra'):
-            result = fill(binary, folder, truth, mask, f'--method={method}')
+            result = fill(binary, folder, truth, mask, *VIEW.options(), f'--method={method}')
             errors[name, method] = scale_error(result, truth, mask)
             if (name, method) == ('brick_regular', 'plane'):
                 like = likeness(result, truth, mask)
@@ -88,6 +93,18 @@ def drawn_planes(tap, binary, folder):
     tap.check(paper < .7 * kwatra,
               'drawn planes: the paper keeps the scale better than its baseline',
               f'octaves of error: paper {paper:.2f}, kwatra {kwatra:.2f}')
+
+
+def photo_without_source_mask(tap, binary, folder):
+    truth = cv2.imread(str(PIER))
+    mask = np.zeros(truth.shape[:2], np.uint8)
+    mask[PIER_HOLE] = 255
+    result = fill(binary, folder, truth, mask, PIER_HORIZON)
+    known, filled = (cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)[PIER_HOLE]
+                     for picture in (truth, result))
+    bright = np.mean(filled > np.percentile(known, 99))
+    tap.check(bright < .06, 'a hole in a pier is filled with boards, not with the water beside it',
+              f'{bright:.3f} of it is brighter than 99 of 100 pixels of the boards')
 
 
 def evaluation_cases(tap, binary, folder):
@@ -105,6 +122,7 @@ def main():
     tap = Tap()
     with tempfile.TemporaryDirectory() as folder:
         drawn_planes(tap, binary, Path(folder))
+        photo_without_source_mask(tap, binary, Path(folder))
         if data_folder() is None:
             tap.skip('cases of the evaluation data', 'the data is not beside the checkout')
         else:
