@@ -15,7 +15,7 @@
 /* Broken lines are seen first: they cost on top of a start's misfit. Starts that continue them may
  * fit worse, for finer levels break what the coarsest still has, and thin lines are faint there. */
 #define PRICE_OF_BROKEN_LINES .3
-#define FAVOUR_OF_LINES 1.3
+#define FAVOUR_OF_LINES 1.8
 #define FAVOUR_OF_CLEAR_LINES 2.
 /* What comes from another board is not what this one shows again and again beside the hole. */
 #define FAVOUR_OF_BOARDS 1.25

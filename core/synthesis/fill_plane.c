@@ -19,6 +19,7 @@
 #include "synthesis/problem.h"
 #include "synthesis/regions.h"
 #include "synthesis/spots.h"
+#include "synthesis/strangers.h"
 #include "synthesis/surface.h"
 #include "synthesis/traits.h"
 
@@ -270,8 +271,10 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(find_lines(context, &e));
   RC_TRY(find_regions(context, &e));
   /* After the lines: a road's own dashes tell whether what crosses the hole repeats. */
-  if (params->engine_spots && !problem->synthesis)
+  if (params->engine_spots && !problem->synthesis) {
     RC_TRY(rc_drop_spots(context, &band, e.images, e.flags, e.level_count));
+    RC_TRY(rc_drop_strangers(context, &band, e.images, e.flags, e.level_count));
+  }
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   context->report.surface = e.chart.raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;

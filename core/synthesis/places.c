@@ -46,6 +46,13 @@ bool rc_look_at_place(const rc_places *p, int column, int row, rc_looks *looks) 
   return *rc_flag(p->flags, x, y) & RC_KNOWN && rc_look_at(p, x, y, looks);
 }
 
+void rc_places_mark_around(const rc_places *p, int column, int row) {
+  for (int y = row - 1; y <= row + 1; y++)
+    for (int x = column - 1; x <= column + 1; x++)
+      if (rc_inside(p->columns, p->rows, x, y) && !p->unlike[y * p->columns + x])
+        p->unlike[y * p->columns + x] = 1;
+}
+
 static bool is_unlike(const rc_places *p, int x, int y) {
   return p->unlike[(size_t)(y / p->step) * (size_t)p->columns + (size_t)(x / p->step)];
 }

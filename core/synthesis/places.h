@@ -10,6 +10,9 @@
 #define RC_LOOKS_PX 4
 /* How far from the hole beside it ends. */
 #define RC_BESIDE_PX 9
+/* And what is near ends: a thing that the hole cuts goes on, while one of some people may stand
+ * beside it. */
+#define RC_TOUCHING_PX 4
 
 typedef struct rc_places {
   const rc_image *image; /* the coarsest level */
@@ -28,6 +31,8 @@ recede_status rc_places_new(rc_context *context, const rc_image *images, const r
 bool rc_look_at(const rc_places *places, int x, int y, rc_looks *looks);
 /* What the middle of a place looks like. False: it is not known. */
 bool rc_look_at_place(const rc_places *places, int column, int row, rc_looks *looks);
+/* What lies there and, for its edge fades into them, in the places around may not be copied. */
+void rc_places_mark_around(const rc_places *places, int column, int row);
 /* Takes RC_SOURCE from what may not be copied, at all levels, unless too little of the hole's own
  * scales would be left. band: where those are, of the finest level; taken: the part of the sources
  * that lost it. */

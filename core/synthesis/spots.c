@@ -8,14 +8,12 @@
 
 /* A spot differs from the mean of its square by more than so many times what anything so near to
  * the hole does: people on a dune 6 and 15, markings on a road 5 and 24. Of what fills the picture
- * at most one pixel of 200 does, and in most of it none. Near: a thing that the hole cuts goes on,
- * while one of some people may stand beside it. */
+ * at most one pixel of 200 does, and in most of it none. */
 #define TIMES_BESIDE 2.f
-#define TOUCHING_PX 4
 /* Where nothing there differs by so much of white, as beside a plain wall, this counts: else any
  * grain would stand out. */
 #define LEAST_CONTRAST .03f
-/* What a spot's place is marked by; those around it, into which its edge fades, by 1. */
+/* What a spot's place is marked by; those around it by 1. */
 #define SPOT 2
 
 typedef struct finder {
@@ -41,7 +39,7 @@ static float most_near_hole(const rc_places *p) {
     for (int x = 0; x < p->flags->width; x++) {
       uint8_t away = p->beside[y * p->flags->width + x];
       rc_looks here;
-      if (away && away <= TOUCHING_PX && rc_look_at(p, x, y, &here))
+      if (away && away <= RC_TOUCHING_PX && rc_look_at(p, x, y, &here))
         most = fmaxf(most, stands_out(p, x, y, &here));
     }
   if (most < 0) return INFINITY;
@@ -66,10 +64,7 @@ static bool grow(const rc_places *p) {
     for (int x = 0; x < p->columns; x++) {
       if (p->unlike[y * p->columns + x] != SPOT) continue;
       any = true;
-      for (int j = y - 1; j <= y + 1; j++)
-        for (int i = x - 1; i <= x + 1; i++)
-          if (rc_inside(p->columns, p->rows, i, j) && !p->unlike[j * p->columns + i])
-            p->unlike[j * p->columns + i] = 1;
+      rc_places_mark_around(p, x, y);
     }
   return any;
 }
