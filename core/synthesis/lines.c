@@ -19,6 +19,10 @@
  * parallel to it, which are less likely there by chance, a little. */
 #define LEAST_STRENGTH 8.f
 #define LEAST_LEADING_STRENGTH 12.f
+/* But large stones have straight edges of 20 to 100, and one may by chance point at another: where
+ * more than this part of the rest of the hole's border has a line as strong, one alone is none. A
+ * stone .17; cracks and a row of tiles .02 to .08. */
+#define MOST_AS_STRONG .12f
 /* How alike both sides' profiles must be: their correlation, and one's amplitude over the other's,
  * for lines fade. */
 #define LEAST_LIKENESS .85f
@@ -225,6 +229,17 @@ static bool stands_out(const finder *f, int item) {
   return true;
 }
 
+/* Of the border pixels away from a line the part that is as strong. */
+static float part_as_strong(const finder *f, const rc_crossing *c) {
+  int width = f->picture.flags->width, away = 0, as_strong = 0;
+  for (int i = 0; i < f->border_count; i++) {
+    float x = (float)(f->border[i] % width), y = (float)(f->border[i] / width);
+    if (rc_crossing_distance(c, x, y) <= RC_PROFILE) continue;
+    away++, as_strong += f->best[i].strength >= c->strength;
+  }
+  return away ? (float)as_strong / (float)away : 0.f;
+}
+
 static void pair_up(const finder *f, rc_crossing lines[RC_MOST_LINES], int *count) {
   int width = f->picture.flags->width;
   for (int i = 0; i < f->border_count; i++) {
@@ -242,6 +257,7 @@ static void pair_up(const finder *f, rc_crossing lines[RC_MOST_LINES], int *coun
           !stands_out(f, j))
         continue;
       refine(f, &c);
+      c.as_strong = part_as_strong(f, &c);
       if (c.strength >= LEAST_STRENGTH) keep(lines, count, c);
     }
   }
@@ -376,6 +392,7 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
   rc_chart here = rc_chart_coarser(*chart, exponent);
   keep_parallel(&here, lines, count);
   follow(&seen, &here, exponent, lines, count);
+  if (*count == 1 && lines->as_strong > MOST_AS_STRONG) *count = 0;
   for (int i = 0; i < *count; i++) memcpy(lines[i].axis, axis, sizeof lines[i].axis);
   rc_release(context, mark);
   return RECEDE_OK;

@@ -15,9 +15,10 @@
 /* A line from the hole's border at a to that at b, px of the finest level. */
 typedef struct rc_crossing {
   float ax, ay, bx, by;
-  float strength;                                       /* signal to noise of its weaker side */
-  float rise;                                           /* -1..1: how far a is a step across */
-  float axis[3];                                        /* the weights of colours it was seen by */
+  float strength;  /* signal to noise of its weaker side */
+  float rise;      /* -1..1: how far a is a step across */
+  float as_strong; /* the part of the rest of the hole's border where some line is as strong */
+  float axis[3];   /* the weights of colours it was seen by */
   float from_x[RC_LINE_PIECES], from_y[RC_LINE_PIECES]; /* where each piece's middle comes from */
 } rc_crossing;
 

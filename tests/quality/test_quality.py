@@ -35,6 +35,12 @@ CASES = ['013', '024', '029']
 PIER = Path(__file__).resolve().parents[2] / 'docs' / 'images' / 'pier.jpg'
 PIER_HORIZON = '--horizon=0,362,1200,362'
 PIER_HOLE = np.s_[452:656, 495:663]
+# And stones of the evaluation data, two of which have straight edges that point at each other: x at
+# the hole's top and bottom.
+STONES_WIDTH = 1000
+STONES_HOLE = np.s_[524:638, 96:272]
+STONES_HORIZON = '--horizon=0,-33,1000,-33'
+STONES_EDGE = 260, 232
 
 
 def detail_octave(picture, region):
@@ -107,6 +113,28 @@ def photo_without_source_mask(tap, binary, folder):
               f'{bright:.3f} of it is brighter than 99 of 100 pixels of the boards')
 
 
+def part_with_edge(gray, ends):
+    """Of the rows the part where brightness steps in one sense at a straight line."""
+    rows = np.arange(len(gray))
+    x = np.round(np.linspace(*ends, len(gray))).astype(int)
+    steps = gray[rows, x + 3] - gray[rows, x - 3]
+    return max(np.mean(steps > 4), np.mean(steps < -4))
+
+
+def hole_among_stones(tap, binary, folder):
+    photo = cv2.imread(str(data_folder() / 'photo' / 'pebble_beach.jpg'))
+    scale = STONES_WIDTH / photo.shape[1]
+    truth = cv2.resize(photo, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    mask = np.zeros(truth.shape[:2], np.uint8)
+    mask[STONES_HOLE] = 255
+    result = fill(binary, folder, truth, mask, STONES_HORIZON)
+    gray = cv2.blur(cv2.cvtColor(result, cv2.COLOR_BGR2GRAY), (3, 3)).astype(int)[STONES_HOLE[0]]
+    part = max(part_with_edge(gray, [end + off for end, off in zip(STONES_EDGE, (top, bottom))])
+               for top in range(-8, 9, 2) for bottom in range(-8, 9, 2))
+    tap.check(part < .9, 'the straight edge of a stone does not go on through a hole',
+              f'in {part:.2f} of its rows there is one')
+
+
 def evaluation_cases(tap, binary, folder):
     scores = score_all(load_cases(CASES), ['plane'], binary, ['--seed=1'], folder,
                        jobs=os.cpu_count())
@@ -124,8 +152,10 @@ def main():
         drawn_planes(tap, binary, Path(folder))
         photo_without_source_mask(tap, binary, Path(folder))
         if data_folder() is None:
-            tap.skip('cases of the evaluation data', 'the data is not beside the checkout')
+            tap.skip('stones and cases of the evaluation data',
+                     'the data is not beside the checkout')
         else:
+            hole_among_stones(tap, binary, Path(folder))
             evaluation_cases(tap, binary, Path(folder))
     return tap.finish()
 
