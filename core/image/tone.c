@@ -16,7 +16,8 @@
 #define PLACES 8
 /* And beside the hole, so much of its longer side away, it must not do this harm: a dark pier
  * between bright water is light to both sides by a trend, but dark by itself. Photos whose light
- * drifts -.01 .. .23, a pier between water and a dune below the sky -.15 and -.21. */
+ * drifts -.06 .. .22, a pier between water and a dune below the sky -.14 and -.21. Of other depths
+ * the trend says nothing. */
 #define LEAST_EXPLAINED_BESIDE -.1
 #define BESIDE_OF_HOLE .25
 /* Enough for six decimals of a trend. */
@@ -171,7 +172,7 @@ static bool explains_what_is_nearby(const rc_image *image, const rc_mask *flags,
   int px = (int)(BESIDE_OF_HOLE * rc_longer_side(hole));
   rc_box beside = rc_box_grown(hole, px, flags->width, flags->height);
   return explained_nearby(image, flags, band, &tone->box, tone) >= LEAST_EXPLAINED_NEARBY &&
-         explained_nearby(image, flags, NULL, &beside, tone) >= LEAST_EXPLAINED_BESIDE;
+         explained_nearby(image, flags, band, &beside, tone) >= LEAST_EXPLAINED_BESIDE;
 }
 
 void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *band, bool drift,

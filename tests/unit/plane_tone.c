@@ -168,9 +168,42 @@ static void steps_stay(void) {
   task_clear(&t);
 }
 
+/* A floor, horizon at row 80, lit from the right, and less and less from row 230 on. */
+static picture floor_lit_from_the_right(void) {
+  picture p = picture_new(1000, 300, 1, RECEDE_U8);
+  for (int y = 0; y < 300; y++)
+    for (int x = 0; x < 1000; x++) {
+      double light = (.24 + .47 * x / 1000) * exp(-fmax(y - 230, 0) / 30);
+      picture_set(&p, x, y, 0, (float)(light * (.8 + .4 * noise_at(x, y, 14))));
+    }
+  return p;
+}
+
+/* The light is that of the hole's own depth: what lies nearer, beside a hole that is wide and flat,
+ * does not speak against it. */
+static void light_is_that_of_the_holes_depth(void) {
+  const area hole = {200, 160, 800, 220};
+  picture truth = floor_lit_from_the_right();
+  task t = task_new(picture_copy(&truth), "orientation=horizon horizon=0,80,1000,80");
+  double off = 0;
+  task_hole(&t, hole);
+  picture_fill(&t.image, hole, 0);
+  task_succeeds(&t);
+  for (int x = hole.x0; x < hole.x1; x += 40) {
+    const area strip = {x, hole.y0, x + 40, hole.y1};
+    off = fmax(off, fabs(moments_of(&t.result, &t.mask, true, strip, 0).mean -
+                         moments_of(&truth, &t.mask, true, strip, 0).mean));
+  }
+  g_test_message("a strip is off by %.4f at the most", off);
+  g_assert_cmpfloat(off, <, .07); /* without the trend .09 */
+  picture_clear(&truth);
+  task_clear(&t);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/tone/drift", drift_leaves_no_seam);
+  g_test_add_func("/tone/depth", light_is_that_of_the_holes_depth);
   g_test_add_func("/tone/sky", sky_tints_no_floor);
   g_test_add_func("/tone/tiles", tiles_keep_their_tone);
   g_test_add_func("/tone/step", steps_stay);
