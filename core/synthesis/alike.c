@@ -17,6 +17,9 @@
 #define TIMES_OWN 2.
 #define OWN_PERCENTILE 90
 #define LEAST_UNLIKE .3
+/* Each is compared with all samples. */
+#define MOST_PLACES (1 << 16)
+
 typedef struct comparison {
   rc_places places;
   rc_looks *sample;
@@ -99,7 +102,7 @@ recede_status rc_keep_alike(rc_context *context, const rc_band *band, const rc_i
   float *nearest;
   rc_block *mark = rc_mark(context);
   *taken = 0;
-  RC_TRY(rc_places_new(context, images, flags, levels, &c.places));
+  RC_TRY(rc_places_new(context, images, flags, levels, MOST_PLACES, &c.places));
   RC_TRY(RC_NEW(context, MOST_SAMPLES, &c.sample));
   RC_TRY(RC_NEW(context, MOST_SAMPLES, &c.sample_at));
   RC_TRY(RC_NEW(context, MOST_SAMPLES, &nearest));

@@ -1,7 +1,7 @@
 /* Method plane: the only file that knows the order of the stages.
  * sources near -> tone -> pyramid -> sources that look alike -> lines, rails, boundary, gauge,
- * regions -> sources without spots -> traits -> start -> (search <-> vote) per level, coarse to
- * fine -> composition -> detail. */
+ * regions -> sources without spots and strangers -> traits -> start -> (search <-> vote) per level,
+ * coarse to fine -> composition -> detail. */
 #include <math.h>
 
 #include "base/memory.h"

@@ -4,9 +4,6 @@
 #include "image/distance.h"
 #include "kernels/kernels.h"
 
-/* Of larger levels only every n-th pixel is a place: thin holes have no coarse one. */
-#define MOST_PLACES (1 << 16)
-
 static recede_status measure_beside(rc_context *context, rc_places *p) {
   const rc_mask *flags = p->flags;
   size_t pixels = (size_t)flags->width * (size_t)flags->height;
@@ -22,12 +19,12 @@ static recede_status measure_beside(rc_context *context, rc_places *p) {
 }
 
 recede_status rc_places_new(rc_context *context, const rc_image *images, const rc_mask *flags,
-                            int levels, rc_places *places) {
+                            int levels, int most, rc_places *places) {
   const rc_mask *coarsest = &flags[levels - 1];
   size_t pixels = (size_t)coarsest->width * (size_t)coarsest->height;
   *places =
       (rc_places){.image = &images[levels - 1], .flags = coarsest, .levels = levels, .step = 1};
-  while (pixels / (size_t)(places->step * places->step) > MOST_PLACES) places->step++;
+  while (pixels / (size_t)(places->step * places->step) > (size_t)most) places->step++;
   places->columns = (coarsest->width + places->step - 1) / places->step;
   places->rows = (coarsest->height + places->step - 1) / places->step;
   RC_TRY(RC_NEW_ZERO(context, places->columns * places->rows, &places->unlike));

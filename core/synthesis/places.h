@@ -13,6 +13,9 @@
 /* And what is near ends: a thing that the hole cuts goes on, while one of some people may stand
  * beside it. */
 #define RC_TOUCHING_PX 4
+/* Small things are looked for in so many places; a level that has more is that of a long and thin
+ * hole, of which patches see both sides. */
+#define RC_MOST_LOOKED_AT (1 << 19)
 
 typedef struct rc_places {
   const rc_image *image; /* the coarsest level */
@@ -24,9 +27,10 @@ typedef struct rc_places {
   uint8_t *unlike;   /* of each: it may not be copied */
 } rc_places;
 
-/* images and flags: the pyramid's levels, finest first. */
+/* images and flags: the pyramid's levels, finest first. Of a level with more pixels than most only
+ * every n-th is a place. */
 recede_status rc_places_new(rc_context *context, const rc_image *images, const rc_mask *flags,
-                            int levels, rc_places *places);
+                            int levels, int most, rc_places *places);
 /* What the pixel looks like, that is, the square around it. False: not enough of it is known. */
 bool rc_look_at(const rc_places *places, int x, int y, rc_looks *looks);
 /* What the middle of a place looks like. False: it is not known. */

@@ -74,8 +74,8 @@ recede_status rc_drop_spots(rc_context *context, const rc_band *band, const rc_i
   finder f;
   double taken;
   rc_block *mark = rc_mark(context);
-  RC_TRY(rc_places_new(context, images, flags, levels, &f.places));
-  if (f.places.step == 1) { /* else the hole is thin: patches see across, and no place is a spot */
+  RC_TRY(rc_places_new(context, images, flags, levels, RC_MOST_LOOKED_AT, &f.places));
+  if (f.places.step == 1) {
     f.most = most_near_hole(&f.places);
     RC_TRY(rc_poll(context));
     RC_TRY(rc_parallel(context, f.places.rows, find_row, &f));

@@ -15,8 +15,8 @@
 #define STRANGE .25f
 /* Of -1 .. 1 in each channel, for the tone is taken away. */
 #define BINS 64
-/* A place is a spot where so much of its sources is strange, and less than that of the square
- * around it: people, not the sky. */
+/* A place is a spot where so much of its sources is strange, for a foot covers little of one, and
+ * in the mean over the square around it less than half: people, not the sky. */
 #define OF_PLACE .1f
 #define MOST_OF_SQUARE .5f
 
@@ -43,11 +43,8 @@ static size_t index_of(const int bin[3]) {
 }
 
 static bool is_near(const strangers *s, int x, int y) {
-  int i = x >> s->shift, j = y >> s->shift;
-  if (!(*rc_flag(s->flags, x, y) & RC_SOURCE) ||
-      !rc_inside(s->places.flags->width, s->places.flags->height, i, j))
-    return false;
-  uint8_t away = s->places.beside[j * s->places.flags->width + i];
+  const rc_places *p = &s->places;
+  uint8_t away = p->beside[(y >> s->shift) * p->flags->width + (x >> s->shift)];
   return away && away <= RC_TOUCHING_PX;
 }
 
@@ -123,7 +120,7 @@ recede_status rc_drop_strangers(rc_context *context, const rc_band *band, const 
   bool any = false;
   rc_block *before = rc_mark(context);
   s.image = &images[levels - 1 - s.shift], s.flags = &flags[levels - 1 - s.shift];
-  RC_TRY(rc_places_new(context, images, flags, levels, &s.places));
+  RC_TRY(rc_places_new(context, images, flags, levels, RC_MOST_LOOKED_AT, &s.places));
   RC_TRY(RC_NEW_ZERO(context, BINS * BINS * BINS, &s.usual));
   RC_TRY(RC_NEW(context, s.places.columns * s.places.rows, &s.strange));
   if (s.places.step == 1) RC_TRY(find_usual(context, &s, &any));
