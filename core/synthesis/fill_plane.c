@@ -1,7 +1,7 @@
 /* Method plane: the only file that knows the order of the stages.
  * sources near -> tone -> pyramid -> sources that look alike -> lines, rails, boundary, gauge,
- * regions -> sources without spots and strangers -> traits -> start -> (search <-> vote) per level,
- * coarse to fine -> composition -> detail. */
+ * regions -> sources without spots and strangers -> tracks -> traits -> start -> (search <-> vote)
+ * per level, coarse to fine -> composition -> detail. */
 #include <math.h>
 
 #include "base/memory.h"
@@ -21,6 +21,7 @@
 #include "synthesis/spots.h"
 #include "synthesis/strangers.h"
 #include "synthesis/surface.h"
+#include "synthesis/tracks.h"
 #include "synthesis/traits.h"
 
 /* The coarsest hole is at least this far across: one level too many breaks regular patterns. */
@@ -244,11 +245,24 @@ static recede_status keep_alike(rc_context *context, const rc_problem *problem, 
   return build_pyramid(context, problem, filled, e);
 }
 
+/* Takes faint bands away from all levels. Boards and two textures have edges of their own. */
+static recede_status take_tracks(rc_context *context, const rc_descent *e, rc_tracks *tracks) {
+  if (rc_runs(&e->rails) || rc_has_sides(&e->sides)) return RECEDE_OK;
+  RC_TRY(rc_tracks_find(context, e->images, e->flags, e->level_count, &e->chart, tracks));
+  for (int n = 0; n < e->level_count; n++) {
+    rc_chart chart = rc_chart_coarser(e->chart, n);
+    rc_image image = e->images[n];
+    RC_TRY(rc_tracks_apply(context, tracks, &chart, n, &e->flags[n], RC_KNOWN, -1, &image));
+  }
+  return RECEDE_OK;
+}
+
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                             const recede_params *params, rc_image *filled) {
   rc_descent e = {.params = params, .kernels = rc_kernels_select(context->host.kernel)};
   bool raised = true;
   rc_tone tone;
+  rc_tracks tracks = {.alike = 0};
   rc_level finest;
   if (!e.kernels)
     return rc_fail(context, RECEDE_ARGUMENT, "This machine has no kernel %d.",
@@ -275,6 +289,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     RC_TRY(rc_drop_spots(context, &band, e.images, e.flags, e.level_count));
     RC_TRY(rc_drop_strangers(context, &band, e.images, e.flags, e.level_count));
   }
+  if (params->engine_tracks && !problem->synthesis) RC_TRY(take_tracks(context, &e, &tracks));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   context->report.surface = e.chart.raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;
@@ -284,6 +299,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(rc_stage(context, "detail", .93, .97));
   if (params->engine_detail) RC_TRY(rc_match_detail(context, &finest, filled));
   count_magnified(context, &e, &finest);
+  RC_TRY(rc_tracks_apply(context, &tracks, &e.chart, 0, &problem->flags, RC_TARGET, 1, filled));
   return rc_tone_apply(context, &tone, &problem->flags, RC_TARGET, 1, filled);
 }
 

@@ -1,6 +1,7 @@
 /* What light, sky and the stones around it do to the tone of a fill, through the public interface.
  */
 #include <math.h>
+#include <string.h>
 
 #include "plane_scene.h"
 
@@ -200,10 +201,71 @@ static void light_is_that_of_the_holes_depth(void) {
   task_clear(&t);
 }
 
+#define BANDS 12
+/* A road, horizon at row 40, with faint bands towards the vanishing point; grain as on a plane. */
+static double band_at(double across) {
+  double tone = 0;
+  for (int i = -12; i <= 12; i++) {
+    double off = (across - .2 * i) / .08;
+    tone += .1 * (noise_at(i + 12, 0, 15) - .5) * exp(-off * off);
+  }
+  return tone;
+}
+static double across_at(int x, int y) { return (x - 320) / (y - 40.); }
+
+static picture road(void) {
+  picture p = picture_new(640, 400, 1, RECEDE_U8);
+  for (int y = 0; y < 400; y++)
+    for (int x = 0; x < 640; x++) {
+      double away = 400 / fmax(y - 40, 1), across = across_at(x, y > 41 ? y : 41);
+      double grain = noise_at((int)floor(200 * away), (int)floor(200 * across), 16);
+      picture_set(&p, x, y, 0, (float)(.4 + band_at(across) + .3 * (grain - .5)));
+    }
+  return p;
+}
+
+/* The mean of each of some bands between the hole's sides. */
+static void profile_of(const picture *p, area hole, double profile[BANDS]) {
+  double counts[BANDS] = {0};
+  memset(profile, 0, BANDS * sizeof *profile);
+  for (int y = hole.y0; y < hole.y1; y++)
+    for (int x = hole.x0; x < hole.x1; x++) {
+      int i = (int)floor((across_at(x, y) + .36) / .72 * BANDS);
+      if (i < 0 || i >= BANDS) continue;
+      profile[i] += picture_get(p, x, y, 0), counts[i]++;
+    }
+  for (int i = 0; i < BANDS; i++) profile[i] /= counts[i];
+}
+
+static double bands_are_off(const picture *truth, const char *settings) {
+  const area hole = {240, 200, 400, 290};
+  double got[BANDS], known[BANDS], square = 0;
+  task t = task_new(picture_copy(truth), settings);
+  task_hole(&t, hole);
+  picture_fill(&t.image, hole, 0);
+  task_succeeds(&t);
+  task_assert_outside(&t);
+  profile_of(&t.result, hole, got), profile_of(truth, hole, known);
+  for (int i = 0; i < BANDS; i++) square += (got[i] - known[i]) * (got[i] - known[i]) / BANDS;
+  task_clear(&t);
+  return sqrt(square);
+}
+
+/* Faint bands go on through the hole, where copies would bring their own. */
+static void tracks_go_on(void) {
+  picture truth = road();
+  double with = bands_are_off(&truth, "orientation=horizon horizon=0,40,640,40");
+  double without = bands_are_off(&truth, "orientation=horizon horizon=0,40,640,40 engine-tracks=0");
+  g_test_message("bands are off by %.4f, without the stage %.4f", with, without);
+  g_assert_cmpfloat(with, <, .7 * without);
+  picture_clear(&truth);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/tone/drift", drift_leaves_no_seam);
   g_test_add_func("/tone/depth", light_is_that_of_the_holes_depth);
+  g_test_add_func("/tone/tracks", tracks_go_on);
   g_test_add_func("/tone/sky", sky_tints_no_floor);
   g_test_add_func("/tone/tiles", tiles_keep_their_tone);
   g_test_add_func("/tone/step", steps_stay);
