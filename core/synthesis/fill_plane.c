@@ -246,9 +246,13 @@ static recede_status keep_alike(rc_context *context, const rc_problem *problem, 
 }
 
 /* Takes faint bands away from all levels. Boards and two textures have edges of their own. */
-static recede_status take_tracks(rc_context *context, const rc_descent *e, rc_tracks *tracks) {
+static recede_status take_tracks(rc_context *context, const rc_descent *e, const rc_tone *tone,
+                                 rc_tracks *tracks) {
+  double brightness = 0;
+  for (int k = 0; k < tone->channels; k++) brightness += fabs(tone->terms[k][0]) / tone->channels;
   if (rc_runs(&e->rails) || rc_has_sides(&e->sides)) return RECEDE_OK;
-  RC_TRY(rc_tracks_find(context, e->images, e->flags, e->level_count, &e->chart, tracks));
+  RC_TRY(
+      rc_tracks_find(context, e->images, e->flags, e->level_count, &e->chart, brightness, tracks));
   for (int n = 0; n < e->level_count; n++) {
     rc_chart chart = rc_chart_coarser(e->chart, n);
     rc_image image = e->images[n];
@@ -289,7 +293,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     RC_TRY(rc_drop_spots(context, &band, e.images, e.flags, e.level_count));
     RC_TRY(rc_drop_strangers(context, &band, e.images, e.flags, e.level_count));
   }
-  if (params->engine_tracks && !problem->synthesis) RC_TRY(take_tracks(context, &e, &tracks));
+  if (params->engine_tracks && !problem->synthesis)
+    RC_TRY(take_tracks(context, &e, &tone, &tracks));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   context->report.surface = e.chart.raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;

@@ -6,7 +6,8 @@
 #include "image/image.h"
 #include "synthesis/copy.h"
 
-/* So many cells are the hole's longer side, and a plan reaches as far to each side of its middle. */
+/* So many cells are the hole's longer side, and a plan reaches as far to each side of its middle.
+ */
 #define RC_PLAN_HOLE 64
 #define RC_PLAN_REACH 102
 #define RC_PLAN_SIDE (2 * RC_PLAN_REACH + 1)
@@ -21,8 +22,7 @@ typedef struct rc_plan {
 } rc_plan;
 
 static inline float *rc_plan_cell(const rc_plan *plan, int column, int row) {
-  return plan->sums +
-         ((size_t)row * RC_PLAN_SIDE + (size_t)column) * (size_t)(plan->channels + 1);
+  return plan->sums + ((size_t)row * RC_PLAN_SIDE + (size_t)column) * (size_t)(plan->channels + 1);
 }
 /* Where in the plan, in cells, pixel (x, y) of a level lies. False: beyond the horizon. */
 bool rc_plan_at(const rc_plan *plan, const rc_chart *chart, int exponent, int x, int y,

@@ -25,6 +25,9 @@
 /* From so few pairs a correlation says nothing. */
 #define LEAST_PAIRS 100
 #define PAIRS_OF_HOLE 2
+/* Of the brightness around: a road's wheel tracks are .02 of it. What is stronger, as the lit and
+ * the dark side of a dune, .25, is a thing that copies show. */
+#define FAINT .08
 /* The bands fade out at the plan's end, where nothing is known of them. */
 #define FADE 16
 /* A cell of which less is known has no band. */
@@ -166,6 +169,15 @@ static recede_status find_direction(rc_context *context, const rc_plan *tone, co
   return rc_poll(context);
 }
 
+static double strength_of(const rc_plan *tone) {
+  size_t each = (size_t)tone->channels + 1;
+  double square = 0, count = 0;
+  for (size_t i = 0; i < RC_PLAN_CELLS * each; i += each)
+    for (size_t k = 0; k + 1 < each && tone->sums[i + each - 1] > 0.f; k++, count++)
+      square += (double)tone->sums[i + k] * (double)tone->sums[i + k];
+  return sqrt(square / fmax(count, 1));
+}
+
 /* Of a line of the plan: 0 at its ends. */
 static float fade_of(int i) {
   int end = i < RC_PLAN_SIDE - 1 - i ? i : RC_PLAN_SIDE - 1 - i;
@@ -191,7 +203,8 @@ static int level_of(const rc_mask *flags, int levels) {
 }
 
 recede_status rc_tracks_find(rc_context *context, const rc_image *images, const rc_mask *flags,
-                             int levels, const rc_chart *chart, rc_tracks *tracks) {
+                             int levels, const rc_chart *chart, double brightness,
+                             rc_tracks *tracks) {
   int exponent = level_of(flags, levels);
   const rc_image *image = &images[exponent];
   const rc_mask *own = &flags[exponent];
@@ -208,14 +221,14 @@ recede_status rc_tracks_find(rc_context *context, const rc_image *images, const 
   RC_TRY(keep_rest(context, true, &seen));
   RC_TRY(broad_tone(context, &seen, &tone));
   RC_TRY(find_direction(context, &tone, &hole, tracks));
-  if (tracks->alike >= LEAST_ALIKE && tracks->across >= LEAST_ALIKE_ACROSS) {
+  if (tracks->alike >= LEAST_ALIKE && tracks->across >= LEAST_ALIKE_ACROSS &&
+      strength_of(&tone) <= FAINT * brightness) {
     seen = tracks->tone;
     RC_TRY(rc_plan_gather(context, image, own, RC_SOURCE, &coarser, exponent, &seen));
     RC_TRY(keep_rest(context, true, &seen));
     RC_TRY(rc_plan_smooth(context, &seen, WIDEST, NARROWEST, &tracks->tone));
     set_bands(&tracks->tone);
-    memcpy(bands, tracks->tone.sums,
-           RC_PLAN_CELLS * (size_t)(image->channels + 1) * sizeof *bands);
+    memcpy(bands, tracks->tone.sums, RC_PLAN_CELLS * (size_t)(image->channels + 1) * sizeof *bands);
     tracks->tone.sums = bands;
   }
   rc_release(context, mark);

@@ -8,13 +8,15 @@
 #include "synthesis/plan.h"
 
 typedef struct rc_tracks {
-  rc_plan tone; /* of the bands; sums NULL: there are none */
+  rc_plan tone;        /* of the bands; sums NULL: there are none */
   float alike, across; /* correlations of what lies along them, anywhere and beyond the hole */
 } rc_tracks;
 
-/* images and flags: the pyramid's levels, finest first, of which chart is. */
+/* images and flags: the pyramid's levels, finest first; chart: of the finest; brightness: the mean
+ * that was taken away from the images. */
 recede_status rc_tracks_find(rc_context *context, const rc_image *images, const rc_mask *flags,
-                             int levels, const rc_chart *chart, rc_tracks *tracks);
+                             int levels, const rc_chart *chart, double brightness,
+                             rc_tracks *tracks);
 /* Adds sign times the bands' tone to the pixels with that flag of a level, of which chart is. */
 recede_status rc_tracks_apply(rc_context *context, const rc_tracks *tracks, const rc_chart *chart,
                               int exponent, const rc_mask *flags, uint8_t flag, float sign,
