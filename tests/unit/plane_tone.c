@@ -122,8 +122,9 @@ static void tiles_keep_their_tone(void) {
   task_clear(&t);
 }
 
-/* A white post that is no source ends in the hole: it does not shine into it. */
-static void cut_things_do_not_shine(void) {
+/* A white post that is no source ends in the hole, on ground with that much contrast: how much
+ * brighter it is below the post than beside it. */
+static double shine_of_a_post(double contrast) {
   const area hole = {100, 100, 220, 200}, below = {146, 102, 162, 112};
   const area left = {106, 102, 130, 112};
   picture post = picture_new(320, 240, 3, RECEDE_U8);
@@ -131,7 +132,8 @@ static void cut_things_do_not_shine(void) {
     for (int x = 0; x < 320; x++)
       for (int k = 0; k < 3; k++) {
         bool white = x >= 150 && x < 158 && y < 130;
-        picture_set(&post, x, y, k, white ? .95f : (float)(.3 + .1 * noise_at(x, y, 11)));
+        double ground = .35 + contrast * (noise_at(x, y, 11) - .5);
+        picture_set(&post, x, y, k, white ? .95f : (float)ground);
       }
   task t = task_new(post, "orientation=frontal");
   task_hole(&t, hole);
@@ -141,9 +143,14 @@ static void cut_things_do_not_shine(void) {
   task_succeeds(&t);
   double near = moments_of(&t.result, &t.mask, true, below, 0).mean;
   double far = moments_of(&t.result, &t.mask, true, left, 0).mean;
-  g_test_message("below the post %.4f, beside it %.4f", near, far);
-  g_assert_cmpfloat(near - far, <, .03);
+  g_test_message("contrast %.2f: below the post %.4f, beside it %.4f", contrast, near, far);
   task_clear(&t);
+  return near - far;
+}
+
+static void cut_things_do_not_shine(void) {
+  g_assert_cmpfloat(shine_of_a_post(.1), <, .03);
+  g_assert_cmpfloat(shine_of_a_post(.25), <, .055); /* by the mean alone .078 */
 }
 
 /* Two gravels of one grain, the lower one darker. Their step is no drift of the light: without it
