@@ -22,9 +22,10 @@
 /* What comes from another board is not what this one shows again and again beside the hole. */
 #define FAVOUR_OF_BOARDS 1.25
 /* Moves along the rails are of so many px and more, nearest first, as many as whole.c looks at; and
- * so many target pixels may find nothing along them: they go on from what lies beside them. */
+ * so many target pixels may find nothing along them: they go on from what lies beside them. Of a
+ * pier as wide as its source mask that is .02, at its far end. */
 #define LEAST_MOVE_PX 6
-#define MOST_WITHOUT_COPY .02
+#define MOST_WITHOUT_COPY .06
 /* Boards have so many times the copies, for each has its own. */
 #define EACH_BOARD 3
 

@@ -53,8 +53,8 @@ static float weight_of(const rc_misses *m, const float *miss, const float *commo
 
 void rc_misses_add(rc_misses *misses, int x, int y, const float *miss) {
   float weight = 1, common[3];
-  float *sums = square_at(misses, misses->sums, (x - misses->x0) / SQUARE_PX,
-                          (y - misses->y0) / SQUARE_PX);
+  float *sums =
+      square_at(misses, misses->sums, (x - misses->x0) / SQUARE_PX, (y - misses->y0) / SQUARE_PX);
   if (misses->settled) {
     common_at(misses, x, y, common);
     weight = weight_of(misses, miss, common);
@@ -76,8 +76,7 @@ static void smooth_square(const rc_misses *m, int column, int row) {
 
 void rc_misses_settle(rc_misses *misses) {
   for (int row = 1; row + 1 < misses->rows; row++)
-    for (int column = 1; column + 1 < misses->columns; column++)
-      smooth_square(misses, column, row);
+    for (int column = 1; column + 1 < misses->columns; column++) smooth_square(misses, column, row);
   memset(misses->sums, 0,
          (size_t)misses->columns * (size_t)misses->rows * EACH * sizeof *misses->sums);
   misses->settled = true;

@@ -14,7 +14,7 @@
 typedef struct rc_relaxation {
   int rows, half_w, channels;
   float *unknown, *drive; /* and the right-hand side: per pixel, what all its edges ask for */
-  uint8_t *edges[4];      /* what those to the left, right, above and below count; 0: there is none */
+  uint8_t *edges[4]; /* what those to the left, right, above and below count; 0: there is none */
   float screening, relaxation;
 } rc_relaxation;
 
