@@ -20,8 +20,8 @@
  * hole: an edge to a known pixel that the copy misses by more than so many times the mean counts
  * less, by the fourth power. From twice the mean on, by the square, texture lost its tone, too. */
 #define MISSES_BY 4.f
-/* What the border's misses do not have in common reaches so far: a flower that the border cuts does
- * not shine, and yet there is no seam. */
+/* What the border's misses do not have in common reaches so far: flowers that the border cuts do
+ * not shine, and what is off a little leaves no seam. */
 #define REACH_OF_THINGS_PX 3.f
 #define SWEEPS_OF_THINGS 8
 /* Sources finer than this many px per px, the mean of both directions, are sampled one level
@@ -100,14 +100,17 @@ static bool miss_at(const composition *c, int x, int y, int e, float *there, flo
   return true;
 }
 
+static float square_of(const composition *c, const float *miss) {
+  float square = 0.f;
+  for (int k = 0; k < c->channels; k++) square += miss[k] * miss[k];
+  return square;
+}
+
 static void sum_misses(const composition *c, int x, int y, row_sums *sums) {
-  float there[3], miss[3], square;
-  for (int e = 0; e < 4; e++) {
-    if (!miss_at(c, x, y, e, there, miss)) continue;
-    square = 0;
-    for (int k = 0; k < c->channels; k++) square += miss[k] * miss[k];
-    sums->miss += sqrt((double)square), sums->misses++;
-  }
+  float there[3], miss[3];
+  for (int e = 0; e < 4; e++)
+    if (miss_at(c, x, y, e, there, miss))
+      sums->miss += sqrt((double)square_of(c, miss)), sums->misses++;
 }
 
 static void sum_row(void *user, int item, int thread) {
@@ -153,8 +156,8 @@ static uint8_t count_of(const composition *c, const float *from, const float *to
 /* Of the edge to a known pixel, which is off what the copy has there. */
 static uint8_t count_of_fixed(const composition *c, const float *value, const float *there,
                               const float *miss) {
-  float counts = (float)count_of(c, value, there), most = MISSES_BY * c->mean_miss, missed = 0.f;
-  for (int k = 0; k < c->channels && most > 0.f; k++) missed += miss[k] * miss[k] / (most * most);
+  float counts = (float)count_of(c, value, there), most = MISSES_BY * c->mean_miss;
+  float missed = most > 0.f ? square_of(c, miss) / (most * most) : 0.f;
   if (missed > 1.f) counts /= missed * missed;
   return (uint8_t)(counts > LEAST_EDGE ? counts : LEAST_EDGE);
 }
@@ -249,17 +252,48 @@ static void correct_row(void *user, int item, int thread) {
   }
 }
 
+static bool touches_known(const composition *c, int x, int y) {
+  for (int e = 0; e < 4; e++)
+    if (is_fixed(c->level, x + step_x[e], y + step_y[e])) return rc_level_is_target(c->level, x, y);
+  return false;
+}
+
+/* Indices of the box's pixels that touch known ones, in order; border NULL: only how many. */
+static recede_status collect_border(rc_context *context, const composition *c, int32_t *border,
+                                    int *count) {
+  const rc_box *box = &c->level->box;
+  *count = 0;
+  for (int y = box->y0; y < box->y1; y++) {
+    for (int x = box->x0; x < box->x1; x++) {
+      if (!touches_known(c, x, y)) continue;
+      if (border) border[*count] = (int32_t)rc_level_at(c->level, x, y);
+      ++*count;
+    }
+    RC_TRY(rc_poll(context));
+  }
+  return RECEDE_OK;
+}
+
 static recede_status find_tone_of_misses(rc_context *context, composition *c) {
+  const rc_level *level = c->level;
   float there[3], miss[3];
-  RC_TRY(rc_misses_new(context, c->level->box, c->channels, c->mean_miss, &c->misses));
+  int32_t *border;
+  int count;
+  RC_TRY(rc_misses_new(context, level->box, c->channels, c->mean_miss, &c->misses));
+  RC_TRY(collect_border(context, c, NULL, &count));
+  RC_TRY(RC_NEW(context, count + 1, &border));
+  RC_TRY(collect_border(context, c, border, &count));
   for (int round = 0; round < RC_MISS_ROUNDS; round++) {
-    for (int y = c->level->box.y0; y < c->level->box.y1; y++)
-      for (int x = c->level->box.x0; x < c->level->box.x1; x++)
-        for (int e = 0; e < 4 && rc_level_is_target(c->level, x, y); e++)
-          if (miss_at(c, x, y, e, there, miss)) rc_misses_add(&c->misses, x, y, miss);
+    for (int i = 0; i < count; i++) {
+      int x = level->box.x0 + border[i] % level->box_w,
+          y = level->box.y0 + border[i] / level->box_w;
+      for (int e = 0; e < 4; e++)
+        if (miss_at(c, x, y, e, there, miss)) rc_misses_add(&c->misses, x, y, miss);
+    }
     rc_misses_settle(&c->misses);
     RC_TRY(rc_poll(context));
   }
+  RC_FREE(context, &border);
   return RECEDE_OK;
 }
 

@@ -248,9 +248,9 @@ static recede_status keep_alike(rc_context *context, const rc_problem *problem, 
 /* Takes faint bands away from all levels. Boards and two textures have edges of their own. */
 static recede_status take_tracks(rc_context *context, const rc_descent *e, const rc_tone *tone,
                                  rc_tracks *tracks) {
-  double brightness = 0;
-  for (int k = 0; k < tone->channels; k++) brightness += fabs(tone->terms[k][0]) / tone->channels;
+  double brightness = 0; /* that of the tone in the picture's middle */
   if (rc_runs(&e->rails) || rc_has_sides(&e->sides)) return RECEDE_OK;
+  for (int k = 0; k < tone->channels; k++) brightness += fabs(tone->terms[k][0]) / tone->channels;
   RC_TRY(
       rc_tracks_find(context, e->images, e->flags, e->level_count, &e->chart, brightness, tracks));
   for (int n = 0; n < e->level_count; n++) {

@@ -16,6 +16,9 @@
 /* Small things are looked for in so many places; a level that has more is that of a long and thin
  * hole, of which patches see both sides. */
 #define RC_MOST_LOOKED_AT (1 << 19)
+static inline bool rc_is_looked_at(const rc_mask *coarsest) {
+  return (int64_t)coarsest->width * coarsest->height <= RC_MOST_LOOKED_AT;
+}
 
 typedef struct rc_places {
   const rc_image *image; /* the coarsest level */

@@ -5,7 +5,8 @@
 
 #include "base/memory.h"
 
-/* Nearer to the horizon a pixel covers more than the plan. */
+/* Nearer to the horizon a pixel is thousands of px long in the plane, and says nothing of a cell.
+ */
 #define LEAST_W .02f
 #define BOXES 3
 
@@ -27,17 +28,21 @@ bool rc_plan_at(const rc_plan *plan, const rc_chart *chart, int exponent, int x,
   return true;
 }
 
-void rc_plan_place(const rc_mask *flags, const rc_chart *chart, int exponent, rc_plan *plan) {
+recede_status rc_plan_place(rc_context *context, const rc_mask *flags, const rc_chart *chart,
+                            int exponent, rc_plan *plan) {
   float low_u = INFINITY, high_u = -INFINITY, low_v = INFINITY, high_v = -INFINITY, u, v;
-  for (int y = 0; y < flags->height; y++)
+  for (int y = 0; y < flags->height; y++) {
     for (int x = 0; x < flags->width; x++) {
       if (!(*rc_flag(flags, x, y) & RC_TARGET) || !in_plane(chart, exponent, x, y, &u, &v))
         continue;
       low_u = fminf(low_u, u), high_u = fmaxf(high_u, u);
       low_v = fminf(low_v, v), high_v = fmaxf(high_v, v);
     }
+    RC_TRY(rc_poll(context));
+  }
   *plan = (rc_plan){.middle_x = (low_u + high_u) / 2, .middle_y = (low_v + high_v) / 2, .a = 1};
   plan->cell = fmaxf(fmaxf(high_u - low_u, high_v - low_v), 1.f) / RC_PLAN_HOLE;
+  return RECEDE_OK;
 }
 
 static void add(rc_plan *plan, const rc_image *image, int x, int y, float column, float row) {
@@ -53,12 +58,14 @@ recede_status rc_plan_gather(rc_context *context, const rc_image *image, const r
   plan->channels = image ? image->channels : 0;
   size_t each = (size_t)plan->channels + 1;
   RC_TRY(RC_NEW_ZERO(context, RC_PLAN_CELLS * each, &plan->sums));
-  for (int y = 0; y < flags->height; y++)
+  for (int y = 0; y < flags->height; y++) {
     for (int x = 0; x < flags->width; x++) {
       float column, row;
       if (*rc_flag(flags, x, y) & flag && rc_plan_at(plan, chart, exponent, x, y, &column, &row))
         add(plan, image, x, y, column, row);
     }
+    RC_TRY(rc_poll(context));
+  }
   for (size_t i = 0; i < RC_PLAN_CELLS * each; i += each) {
     float count = plan->sums[i + each - 1];
     for (size_t k = 0; k < each && count > 0.f; k++) plan->sums[i + k] /= count;

@@ -28,7 +28,8 @@ static inline float *rc_plan_cell(const rc_plan *plan, int column, int row) {
 bool rc_plan_at(const rc_plan *plan, const rc_chart *chart, int exponent, int x, int y,
                 float *column, float *row);
 /* Around the target of a level, rows to the right; sums is NULL. chart: of that level. */
-void rc_plan_place(const rc_mask *flags, const rc_chart *chart, int exponent, rc_plan *plan);
+recede_status rc_plan_place(rc_context *context, const rc_mask *flags, const rc_chart *chart,
+                            int exponent, rc_plan *plan);
 /* Sums a level's pixels that have the flag, and divides by their number: weights are 1 or 0. An
  * image of NULL: there is only the weight. */
 recede_status rc_plan_gather(rc_context *context, const rc_image *image, const rc_mask *flags,

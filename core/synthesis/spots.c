@@ -73,14 +73,13 @@ recede_status rc_drop_spots(rc_context *context, const rc_band *band, const rc_i
                             const rc_mask *flags, int levels) {
   finder f;
   double taken;
+  if (!rc_is_looked_at(&flags[levels - 1])) return RECEDE_OK;
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_places_new(context, images, flags, levels, RC_MOST_LOOKED_AT, &f.places));
-  if (f.places.step == 1) {
-    f.most = most_near_hole(&f.places);
-    RC_TRY(rc_poll(context));
-    RC_TRY(rc_parallel(context, f.places.rows, find_row, &f));
-    if (grow(&f.places)) RC_TRY(rc_places_take(context, &f.places, band, flags, &taken));
-  }
+  f.most = most_near_hole(&f.places);
+  RC_TRY(rc_poll(context));
+  RC_TRY(rc_parallel(context, f.places.rows, find_row, &f));
+  if (grow(&f.places)) RC_TRY(rc_places_take(context, &f.places, band, flags, &taken));
   rc_release(context, mark);
   return RECEDE_OK;
 }

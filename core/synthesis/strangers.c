@@ -118,12 +118,13 @@ recede_status rc_drop_strangers(rc_context *context, const rc_band *band, const 
   strangers s = {.shift = levels - 1 < FINER ? levels - 1 : FINER};
   double taken;
   bool any = false;
+  if (!rc_is_looked_at(&flags[levels - 1])) return RECEDE_OK;
   rc_block *before = rc_mark(context);
   s.image = &images[levels - 1 - s.shift], s.flags = &flags[levels - 1 - s.shift];
   RC_TRY(rc_places_new(context, images, flags, levels, RC_MOST_LOOKED_AT, &s.places));
   RC_TRY(RC_NEW_ZERO(context, BINS * BINS * BINS, &s.usual));
   RC_TRY(RC_NEW(context, s.places.columns * s.places.rows, &s.strange));
-  if (s.places.step == 1) RC_TRY(find_usual(context, &s, &any));
+  RC_TRY(find_usual(context, &s, &any));
   if (any) {
     RC_TRY(rc_parallel(context, s.places.rows, compare_row, &s));
     mark_spots(&s);

@@ -208,13 +208,13 @@ recede_status rc_tracks_find(rc_context *context, const rc_image *images, const 
   int exponent = level_of(flags, levels);
   const rc_image *image = &images[exponent];
   const rc_mask *own = &flags[exponent];
-  rc_chart coarser = rc_chart_flat(rc_chart_coarser(*chart, exponent));
+  rc_chart coarser = rc_chart_coarser(*chart, exponent);
   rc_plan seen, hole, tone;
   float *bands;
   *tracks = (rc_tracks){.alike = 0};
   RC_TRY(RC_NEW(context, RC_PLAN_CELLS * (image->channels + 1), &bands));
   rc_block *mark = rc_mark(context);
-  rc_plan_place(own, &coarser, exponent, &tracks->tone);
+  RC_TRY(rc_plan_place(context, own, &coarser, exponent, &tracks->tone));
   hole = seen = tracks->tone;
   RC_TRY(rc_plan_gather(context, NULL, own, RC_TARGET, &coarser, exponent, &hole));
   RC_TRY(rc_plan_gather(context, image, own, RC_SOURCE, &coarser, exponent, &seen));
@@ -271,8 +271,7 @@ static void apply_row(void *user, int y, int thread) {
 recede_status rc_tracks_apply(rc_context *context, const rc_tracks *tracks, const rc_chart *chart,
                               int exponent, const rc_mask *flags, uint8_t flag, float sign,
                               rc_image *image) {
-  rc_chart flat = rc_chart_flat(*chart);
-  application a = {&tracks->tone, &flat, exponent, flags, flag, sign, image};
+  application a = {&tracks->tone, chart, exponent, flags, flag, sign, image};
   if (!tracks->tone.sums) return RECEDE_OK;
   return rc_parallel(context, image->height, apply_row, &a);
 }

@@ -12,8 +12,8 @@ typedef struct rc_tracks {
   float alike, across; /* correlations of what lies along them, anywhere and beyond the hole */
 } rc_tracks;
 
-/* images and flags: the pyramid's levels, finest first; chart: of the finest; brightness: the mean
- * that was taken away from the images. */
+/* images and flags: the pyramid's levels, finest first; chart: of the finest; brightness: what
+ * faint is told by. */
 recede_status rc_tracks_find(rc_context *context, const rc_image *images, const rc_mask *flags,
                              int levels, const rc_chart *chart, double brightness,
                              rc_tracks *tracks);

@@ -220,13 +220,13 @@ static double band_at(double across) {
 }
 static double across_at(int x, int y) { return (x - 320) / (y - 40.); }
 
-static picture road(void) {
+static picture road(double bands) {
   picture p = picture_new(640, 400, 1, RECEDE_U8);
   for (int y = 0; y < 400; y++)
     for (int x = 0; x < 640; x++) {
       double away = 400 / fmax(y - 40, 1), across = across_at(x, y > 41 ? y : 41);
       double grain = noise_at((int)floor(200 * away), (int)floor(200 * across), 16);
-      picture_set(&p, x, y, 0, (float)(.4 + band_at(across) + .3 * (grain - .5)));
+      picture_set(&p, x, y, 0, (float)(.4 + bands * band_at(across) + .3 * (grain - .5)));
     }
   return p;
 }
@@ -260,7 +260,7 @@ static double bands_are_off(const picture *truth, const char *settings) {
 
 /* Faint bands go on through the hole, where copies would bring their own. */
 static void tracks_go_on(void) {
-  picture truth = road();
+  picture truth = road(1);
   double with = bands_are_off(&truth, "orientation=horizon horizon=0,40,640,40");
   double without = bands_are_off(&truth, "orientation=horizon horizon=0,40,640,40 engine-tracks=0");
   g_test_message("bands are off by %.4f, without the stage %.4f", with, without);
@@ -268,11 +268,29 @@ static void tracks_go_on(void) {
   picture_clear(&truth);
 }
 
+static guint64 road_hash(double bands, const char *settings) {
+  task t = task_new(road(bands), settings);
+  task_hole(&t, (area){240, 200, 400, 290});
+  task_succeeds(&t);
+  guint64 hash = t.report.output_hash;
+  task_clear(&t);
+  return hash;
+}
+
+/* Strong bands are things, which copies show. */
+static void only_faint_tracks_are_led(void) {
+  const char *on = "quality=draft orientation=horizon horizon=0,40,640,40";
+  const char *off = "quality=draft orientation=horizon horizon=0,40,640,40 engine-tracks=0";
+  g_assert_cmphex(road_hash(1, on), !=, road_hash(1, off));
+  g_assert_cmphex(road_hash(4, on), ==, road_hash(4, off));
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/tone/drift", drift_leaves_no_seam);
   g_test_add_func("/tone/depth", light_is_that_of_the_holes_depth);
   g_test_add_func("/tone/tracks", tracks_go_on);
+  g_test_add_func("/tone/strong-bands", only_faint_tracks_are_led);
   g_test_add_func("/tone/sky", sky_tints_no_floor);
   g_test_add_func("/tone/tiles", tiles_keep_their_tone);
   g_test_add_func("/tone/step", steps_stay);
