@@ -17,6 +17,6 @@ pair() {
     -border 4x0 +append -quality 88 -strip "$images/$name-before-after.jpg"
 }
 
-pair pier 620x400+290+390 --source docs/images/pier-planks.png --horizon 0,362,1200,362
+pair pier 620x400+290+390 --horizon 0,362,1200,362
 pair motorway 560x260+60+280 --horizon 0,302,960,302
 pair roofs 330x230+10+235 --frontal

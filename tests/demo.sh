@@ -7,10 +7,10 @@ photo=docs/images/pier.jpg folder=out/demo
 result=$folder/pier-filled.png
 mkdir -p "$folder"
 set -x
-build/cli/recede fill $photo --mask docs/images/pier-mask.png --source docs/images/pier-planks.png \
-  --horizon 0,362,1200,362 -o $result --force --json $folder/report.json
+build/cli/recede fill $photo --mask docs/images/pier-mask.png --horizon 0,362,1200,362 \
+  -o $result --force --json $folder/report.json
 { set +x; } 2>/dev/null
 echo
 echo "the photo:   $PWD/$photo"
-echo "the hole:    $PWD/docs/images/pier-mask.png (white; planks are copied, water is not)"
+echo "the hole:    $PWD/docs/images/pier-mask.png (white; planks are copied, water is not: nobody has to say so)"
 echo "the result:  $PWD/$result"
