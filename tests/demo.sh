@@ -12,5 +12,5 @@ build/cli/recede fill $photo --mask docs/images/pier-mask.png --horizon 0,362,12
 { set +x; } 2>/dev/null
 echo
 echo "the photo:   $PWD/$photo"
-echo "the hole:    $PWD/docs/images/pier-mask.png (white; planks are copied, water is not: nobody has to say so)"
+echo "the hole:    $PWD/docs/images/pier-mask.png (white; planks are copied, the water is not)"
 echo "the result:  $PWD/$result"
