@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/cholesky.h"
 #include "base/parallel.h"
 
 /* Part of the variance that a trend must explain: below, it is lost in the texture. */
@@ -74,32 +75,6 @@ static void gather(const rc_image *image, const rc_mask *flags, const rc_band *b
       basis(tone, x, y, terms);
       add(s, terms, rc_pixel(image, x, y), image->channels);
     }
-}
-
-/* Cholesky's lower triangle in place; false when the sources do not determine the trend. */
-static bool factor(double m[TERMS][TERMS]) {
-  double most = m[0][0];
-  for (int i = 0; i < TERMS; i++)
-    for (int j = 0; j <= i; j++) {
-      double v = m[i][j];
-      for (int k = 0; k < j; k++) v -= m[i][k] * m[j][k];
-      if (i == j && !(v > 1e-6 * most)) return false;
-      m[i][j] = i == j ? sqrt(v) : v / m[j][j];
-    }
-  return true;
-}
-
-static void substitute(double m[TERMS][TERMS], const double value[TERMS], double terms[TERMS]) {
-  for (int i = 0; i < TERMS; i++) {
-    double v = value[i];
-    for (int k = 0; k < i; k++) v -= m[i][k] * terms[k];
-    terms[i] = v / m[i][i];
-  }
-  for (int i = TERMS - 1; i >= 0; i--) {
-    double v = terms[i];
-    for (int k = i + 1; k < TERMS; k++) v -= m[k][i] * terms[k];
-    terms[i] = v / m[i][i];
-  }
 }
 
 /* Part of the variance about the mean that the terms explain. */
@@ -187,8 +162,11 @@ void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *ban
   if (!(s.product[0][0] > 0)) gather(image, flags, band = NULL, tone, &s);
   double count = s.product[0][0];
   if (!(count > 0)) return;
-  if (drift && factor(s.product)) {
-    for (int k = 0; k < tone->channels; k++) substitute(s.product, s.value[k], tone->terms[k]);
+  if (drift && rc_factor(TERMS, s.product[0])) {
+    for (int k = 0; k < tone->channels; k++) {
+      memcpy(tone->terms[k], s.value[k], sizeof s.value[k]);
+      rc_substitute(TERMS, s.product[0], tone->terms[k]);
+    }
     if (explained(tone, &s, count) >= LEAST_EXPLAINED &&
         explains_what_is_nearby(image, flags, band, tone))
       return;
