@@ -2,6 +2,7 @@
 #ifndef RECEDE_SYNTHESIS_DESCENT_H
 #define RECEDE_SYNTHESIS_DESCENT_H
 
+#include "synthesis/lattice.h"
 #include "synthesis/level.h"
 #include "synthesis/lines.h"
 #include "synthesis/periods.h"
@@ -21,14 +22,15 @@ typedef struct rc_descent {
   rc_traits traits[RC_MAX_LEVELS];
   rc_copy periods[RC_MOST_PERIODS]; /* px of the coarsest level */
   int period_count;
+  rc_lattice lattice;               /* px of the coarsest level */
   bool repeats;                     /* as rc_find_periods says */
   rc_crossing lines[RC_MOST_LINES]; /* px of the finest level */
   int line_count;
   rc_rails rails;
-  rc_sides sides;                /* of the finest level */
-  bool on_rails, continue_lines; /* starts that kept to them fitted well enough */
-  int cut_level;                 /* where seams are led by cuts; level_count: nowhere */
-  uint64_t rest;                 /* out: pixels that only continue what lies beside them */
+  rc_sides sides;                            /* of the finest level */
+  bool on_rails, on_lattice, continue_lines; /* starts that kept to them fitted well enough */
+  int cut_level;                             /* where seams are led by cuts; level_count: nowhere */
+  uint64_t rest; /* out: pixels that only continue what lies beside them */
 } rc_descent;
 
 /* Makes the finest level, its field settled into whole copies. Progress .1 .. .8. */

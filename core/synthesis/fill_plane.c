@@ -297,8 +297,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     RC_TRY(take_tracks(context, &e, &tone, &tracks));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
-  context->report.surface = e.chart.raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;
   RC_TRY(rc_descend(context, &e, &finest));
+  context->report.surface = e.chart.raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;
   RC_TRY(rc_stage(context, "composition", .8, .93));
   RC_TRY(compose(context, &e, &finest, filled));
   RC_TRY(rc_stage(context, "detail", .93, .97));

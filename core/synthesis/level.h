@@ -80,6 +80,14 @@ static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
   return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & RC_TARGET) != 0;
 }
 
+/* What varies most, or brightness: what periods are told by. */
+static inline float rc_level_trait(const rc_level *level, int i) {
+  uint32_t pixel = level->pixels[i];
+  if (level->principal) return (float)(pixel & 255);
+  return .3f * (float)(pixel & 255) + .59f * (float)(pixel >> 8 & 255) +
+         .11f * (float)(pixel >> 16 & 255);
+}
+
 /* What only composition asks for: room, box and an empty field. */
 recede_status rc_level_new(rc_context *context, const rc_mask *flags, const rc_chart *chart,
                            rc_level *level);

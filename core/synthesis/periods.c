@@ -126,13 +126,6 @@ static recede_status collect(rc_context *context, const correlation *c,
   return RECEDE_OK;
 }
 
-/* What varies most, or brightness. */
-static float trait_of(const rc_level *level, uint32_t pixel) {
-  if (level->principal) return (float)(pixel & 255);
-  return .3f * (float)(pixel & 255) + .59f * (float)(pixel >> 8 & 255) +
-         .11f * (float)(pixel >> 16 & 255);
-}
-
 recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key,
                               rc_copy periods[RC_MOST_PERIODS], int *count, bool *repeats) {
   size_t pixels = (size_t)level->width * (size_t)level->height;
@@ -148,7 +141,7 @@ recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64
   RC_TRY(RC_NEW(context, pixels, &trait));
   RC_TRY(RC_NEW(context, POINTS, &points));
   RC_TRY(RC_NEW(context, (c.lag + 1) * (2 * c.lag + 1), &c.value));
-  for (size_t i = 0; i < pixels; i++) trait[i] = trait_of(level, level->pixels[i]);
+  for (size_t i = 0; i < pixels; i++) trait[i] = rc_level_trait(level, (int)i);
   for (int i = 0; i < POINTS; i++)
     points[i] =
         level->order[rc_below((uint32_t)rc_random(key, (uint32_t)i, 0, 0), (uint32_t)sources)];

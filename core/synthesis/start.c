@@ -53,8 +53,8 @@ static void consider_chance(const ring *r, choice *c, int x, int y) {
     uint64_t bits = rc_random(r->search->key, (uint32_t)x, (uint32_t)y, (uint32_t)n);
     rc_level_random_source(level, sources, bits, &sx, &sy);
     consider(r, c,
-             rc_copy_between(&level->chart, c->query.x, c->query.y, rc_level_x(level, sx),
-                             rc_level_y(level, sy)));
+             rc_search_copy(r->search, &level->chart, c->query.x, c->query.y, rc_level_x(level, sx),
+                            rc_level_y(level, sy)));
   }
 }
 
@@ -69,14 +69,14 @@ static void refine(const ring *r, choice *c, int x, int y) {
       int dy = (int)rc_below((uint32_t)(bits >> 32), 2u * (uint32_t)radius + 1) - radius;
       if (!(rc_level_w(level, place.x + (float)dx, place.y + (float)dy) > 0.f)) continue;
       consider(r, c,
-               rc_copy_between(&level->chart, c->query.x, c->query.y, place.x + (float)dx,
-                               place.y + (float)dy));
+               rc_search_copy(r->search, &level->chart, c->query.x, c->query.y, place.x + (float)dx,
+                              place.y + (float)dy));
     }
 }
 
 static void consider_periods(const ring *r, choice *c) {
-  for (int n = 0; n < r->search->period_count && !r->level->chart.raised; n++)
-    consider(r, c, r->search->periods[n]);
+  if (r->level->chart.raised || rc_has_lattice(&r->search->lattice)) return;
+  for (int n = 0; n < r->search->period_count; n++) consider(r, c, r->search->periods[n]);
 }
 
 static void choose(const ring *r, int32_t pixel) {
