@@ -74,9 +74,7 @@ sanitized() {
   step "configure-$label" configure "$folder" "-Db_sanitize=$sanitizers" -Db_lundef=false \
     -Dbuildtype=debugoptimized -Db_ndebug=false -Dgimp2=disabled -Dgimp3=disabled || return
   step "compile-$label" ninja -C "$folder" || return
-  # The slow unwinder sees through libraries without frame pointers, as the suppressions need.
-  export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
-  ASAN_OPTIONS+=:fast_unwind_on_malloc=0:malloc_context_size=12
+  export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1:malloc_context_size=12
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
   export LSAN_OPTIONS=suppressions=$project/tests/house/lsan.supp:print_suppressions=0
   export TSAN_OPTIONS=suppressions=$project/tests/house/tsan.supp:print_suppressions=0

@@ -28,6 +28,10 @@ TIME_LIMIT_S = 60
 
 # Under sanitizers the same code is run, less often: each run takes several times as long.
 SANITIZED = "ASAN_OPTIONS" in os.environ
+if SANITIZED:
+    # Leaks of libraries are told by who allocated, which the fast unwinder does not see through
+    # libraries without frame pointers.
+    os.environ["ASAN_OPTIONS"] += ":fast_unwind_on_malloc=0"
 
 
 class Failure(Exception):
