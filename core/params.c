@@ -100,6 +100,8 @@ static const recede_param_info table[] = {
     STAGE("engine-alike", engine_alike, "copy only what looks like something beside the hole"),
     STAGE("engine-spots", engine_spots,
           "copy nothing that stands out, by contrast or colour, more than all near the hole"),
+    STAGE("engine-focus", engine_focus, "copy what is as sharp as what lies around"),
+    STAGE("engine-light", engine_light, "copy what lies in the same light, or nearly"),
     STAGE("engine-periods", engine_periods, "candidates at the texture's periods"),
     STAGE("engine-lattice", engine_lattice,
           "copy what repeats both ways by whole periods, bent as it lies"),

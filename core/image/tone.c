@@ -175,6 +175,12 @@ void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *ban
   for (int k = 0; k < tone->channels; k++) tone->terms[k][0] = s.value[k][0] / count;
 }
 
+void rc_tone_at(const rc_tone *tone, int x, int y, double values[3]) {
+  double terms[TERMS];
+  basis(tone, within(x, tone->box.x0, tone->box.x1), within(y, tone->box.y0, tone->box.y1), terms);
+  for (int k = 0; k < tone->channels; k++) values[k] = value_of(tone, k, terms);
+}
+
 bool rc_tone_drifts(const rc_tone *tone) {
   for (int k = 0; k < tone->channels; k++)
     for (int i = 1; i < TERMS; i++)

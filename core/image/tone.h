@@ -24,6 +24,8 @@ typedef struct rc_tone {
 void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *band, bool drift,
                  rc_tone *tone);
 bool rc_tone_drifts(const rc_tone *tone);
+/* The tone's channels at a pixel. */
+void rc_tone_at(const rc_tone *tone, int x, int y, double values[3]);
 /* Adds sign * tone to the pixels with that flag. */
 recede_status rc_tone_apply(rc_context *context, const rc_tone *tone, const rc_mask *flags,
                             uint8_t flag, float sign, rc_image *image);

@@ -81,6 +81,7 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
         rc_stage(context, coarsest ? "start" : "search", coarsest ? .1 : from, exponent ? to : .8));
     RC_TRY(rc_level_new(context, &e->flags[exponent], &chart, &level));
     level.sides = rc_sides_coarser(e->sides, exponent);
+    level.conditions = rc_conditions_coarser(e->conditions, exponent);
     if (!coarsest) level.ranges = coarser.ranges;
     if (exponent >= last_searched(e))
       RC_TRY(rc_level_see(context, &e->images[exponent], &e->traits[exponent], gamma, e->gain,

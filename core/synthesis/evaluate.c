@@ -71,6 +71,7 @@ void rc_query_set(const rc_level *level, int x, int y, rc_query *query) {
   query->y = rc_level_y(level, y);
   query->side =
       rc_has_sides(&level->sides) ? rc_side(&level->sides, &level->chart, query->x, query->y) : 0.f;
+  query->condition = level->conditions.cells ? rc_condition_at(&level->conditions, x, y) : NULL;
   int c = level->classes[rc_level_at(level, x, y)];
   query->low = level->ranges.low[c];
   query->high = level->ranges.high[c];
@@ -126,11 +127,19 @@ static float price_of_sides(const rc_level *level, const rc_query *query, const 
   return RC_PRICE_SIDE * level->variance * off * off;
 }
 
+static float price_of_conditions(const rc_level *level, const rc_query *query,
+                                 const rc_place *place) {
+  int x, y;
+  if (!query->condition || !rc_place_px(level, place, &x, &y)) return 0.f;
+  return level->variance *
+         rc_conditions_price(rc_condition_at(&level->conditions, x, y), query->condition);
+}
+
 float rc_query_price(const rc_level *level, const rc_query *query, rc_copy copy,
                      const rc_place *place) {
   return rc_query_allows(level, query, copy, place)
              ? rc_place_price(level->variance, place, query->low, query->high) +
-                   price_of_sides(level, query, place)
+                   price_of_sides(level, query, place) + price_of_conditions(level, query, place)
              : RC_NO_COST;
 }
 
@@ -146,6 +155,7 @@ float rc_query_cost(const rc_level *level, const rc_kernels *kernels, rc_query *
   rc_footprint footprint;
   float price = rc_place_price(level->variance, place, query->low, query->high);
   if (price < limit) price += price_of_sides(level, query, place);
+  if (price < limit) price += price_of_conditions(level, query, place);
   if (price >= limit || !set_footprint(level, &level->chart, copy, place, &footprint))
     return RC_NO_COST;
   if (!query->gathered) gather(level, query);

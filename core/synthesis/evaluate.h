@@ -22,10 +22,11 @@
 /* The target patch at one pixel, ready to be compared. */
 typedef struct rc_query {
   rc_patch patch;
-  float per_weight; /* 1 / sum of weights */
-  float side;       /* -1 .. 1 */
-  float x, y;       /* relative to the chart's origin */
-  float low, high;  /* ratios allowed here */
+  float per_weight;              /* 1 / sum of weights */
+  float side;                    /* -1 .. 1 */
+  const rc_condition *condition; /* NULL where all have the same */
+  float x, y;                    /* relative to the chart's origin */
+  float low, high;               /* ratios allowed here */
   int32_t px, py;
   bool gathered; /* patch and per_weight are set: not before the first distance is asked for */
 } rc_query;
@@ -49,13 +50,20 @@ static inline rc_place rc_query_place(const rc_level *level, const rc_query *que
 }
 /* Price of ratio and mismatch alone; RC_NO_COST outside the allowed range. */
 float rc_place_price(float variance, const rc_place *place, float low, float high);
-/* The index of the level's pixel nearest to a place; false when it lies outside the picture. */
-static inline bool rc_place_at(const rc_level *level, const rc_place *place, size_t *at) {
+/* The level's pixel nearest to a place; false when it lies outside the picture. */
+static inline bool rc_place_px(const rc_level *level, const rc_place *place, int *px, int *py) {
   float x = place->x + level->chart.x0 + .5f, y = place->y + level->chart.y0 + .5f;
   if (place->beyond ||
       !(x >= 0.f && y >= 0.f && x < (float)level->width && y < (float)level->height))
     return false;
-  *at = (size_t)(int)y * (size_t)level->width + (size_t)(int)x;
+  *px = (int)x, *py = (int)y;
+  return true;
+}
+/* And its index. */
+static inline bool rc_place_at(const rc_level *level, const rc_place *place, size_t *at) {
+  int x, y;
+  if (!rc_place_px(level, place, &x, &y)) return false;
+  *at = (size_t)y * (size_t)level->width + (size_t)x;
   return true;
 }
 /* Its pixel; false when it is no source. */

@@ -1,7 +1,7 @@
 /* Method plane: the only file that knows the order of the stages.
  * sources near -> tone -> pyramid -> sources that look alike -> lines, rails, boundary, gauge,
- * regions -> sources without spots and strangers -> tracks -> traits -> start -> (search <-> vote)
- * per level, coarse to fine -> composition -> detail. */
+ * regions -> sources without spots and strangers -> tracks -> conditions -> traits -> start ->
+ * (search <-> vote) per level, coarse to fine -> composition -> detail. */
 #include <math.h>
 
 #include "base/memory.h"
@@ -295,6 +295,9 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   }
   if (params->engine_tracks && !problem->synthesis)
     RC_TRY(take_tracks(context, &e, &tone, &tracks));
+  RC_TRY(rc_conditions_find(context, e.images, e.flags, e.level_count, &tone,
+                            127 / (DEVIATIONS * e.gain), params->engine_focus, params->engine_light,
+                            &e.conditions));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   RC_TRY(rc_descend(context, &e, &finest));
@@ -321,5 +324,6 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int ch
   uint64_t composition = box * (12 * c + 4) + pads;
   uint64_t detail = (grown < pixels ? grown : pixels) * (12 * c + 1) + pixels;
   uint64_t last = search > composition ? search : composition;
-  return pyramid + levels + (last > detail ? last : detail) + ((uint64_t)4 << 20);
+  uint64_t conditions = pixels / 4 + (64 << 10);
+  return pyramid + levels + conditions + (last > detail ? last : detail) + ((uint64_t)4 << 20);
 }

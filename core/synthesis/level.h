@@ -5,6 +5,7 @@
 
 #include "image/image.h"
 #include "kernels/kernels.h"
+#include "synthesis/conditions.h"
 #include "synthesis/copy.h"
 #include "synthesis/sides.h"
 #include "synthesis/traits.h"
@@ -47,6 +48,7 @@ typedef struct rc_level {
   int32_t lane_offset[RC_PATCH_LANES]; /* of each lane of a patch, in pixels */
   rc_ranges ranges;
   rc_sides sides;
+  rc_conditions conditions;
   float variance; /* of sources, byte^2, summed over the components */
   /* Sources sorted by side and w: indices of pixels, bin b of side s at order[first[s][b]] ..
    * order[first[s][b + 1]]. NULL where nobody asks: the finer levels look nearby, and take the

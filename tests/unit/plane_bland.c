@@ -261,6 +261,58 @@ static void moat_is_crossed(void) {
   task_clear(&t);
 }
 
+/* Rough ground in focus from row 150 to 250, and more and more out of it above and below. */
+static picture ground_in_focus_between(void) {
+  picture sharp = picture_new(480, 400, 1, RECEDE_U8), p = picture_new(480, 400, 1, RECEDE_U8);
+  for (int y = 0; y < 400; y++)
+    for (int x = 0; x < 480; x++) {
+      double v = 0;
+      for (int px = 2; px <= 32; px *= 2) v += noise_at(x / px, y / px, px) / 5;
+      picture_set(&sharp, x, y, 0, (float)v);
+    }
+  for (int y = 0; y < 400; y++)
+    for (int x = 0; x < 480; x++) {
+      int reach = MIN(MAX(MAX(150 - y, y - 250), 0) / 6, 8), count = 0;
+      double sum = 0;
+      for (int j = MAX(y - reach, 0); j <= MIN(y + reach, 399); j++)
+        for (int i = MAX(x - reach, 0); i <= MIN(x + reach, 479); i++)
+          sum += picture_get(&sharp, i, j, 0), count++;
+      picture_set(&p, x, y, 0, (float)(sum / count));
+    }
+  picture_clear(&sharp);
+  return p;
+}
+
+/* Mean of the steps from pixel to pixel. */
+static double step_in(const picture *p, area a) {
+  double sum = 0;
+  for (int y = a.y0; y < a.y1; y++)
+    for (int x = a.x0; x + 1 < a.x1; x++)
+      sum += fabs(picture_get(p, x + 1, y, 0) - picture_get(p, x, y, 0));
+  return sum / ((a.y1 - a.y0) * (a.x1 - a.x0 - 1));
+}
+
+/* How sharp the hole's content is, in units of what was there: mean over seeds. */
+static double sharpness(const char *settings) {
+  const area hole = {190, 150, 290, 250};
+  double sum = 0;
+  for (int seed = 0; seed < 3; seed++) {
+    picture truth = ground_in_focus_between();
+    task t = filled(picture_copy(&truth), hole, settings, seed, 0);
+    sum += step_in(&t.result, hole) / step_in(&truth, hole) / 3;
+    picture_clear(&truth);
+    task_clear(&t);
+  }
+  g_test_message("%s: %.2f as sharp as what was there", settings, sum);
+  return sum;
+}
+
+static void what_is_in_focus_stays_so(void) {
+  double with = sharpness("orientation=frontal");
+  g_assert_cmpfloat(with, >, .72);
+  g_assert_cmpfloat(sharpness("orientation=frontal engine-focus=0"), <, with - .1);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/bland/flowers", flowers_go_on);
@@ -271,5 +323,6 @@ int main(int argc, char **argv) {
   g_test_add_func("/bland/strangers", strangers_stay_where_they_are);
   g_test_add_func("/bland/small-hole", strangers_stay_beside_small_holes);
   g_test_add_func("/bland/far", something_stays);
+  g_test_add_func("/bland/focus", what_is_in_focus_stays_so);
   return g_test_run();
 }

@@ -285,6 +285,52 @@ static void only_faint_tracks_are_led(void) {
   g_assert_cmphex(road_hash(4, on), ==, road_hash(4, off));
 }
 
+/* Ground lit from .2 at the left to 1 at the right: its contrast is the light's. */
+static picture ground_in_drifting_light(void) {
+  picture p = picture_new(600, 300, 1, RECEDE_U8);
+  for (int y = 0; y < 300; y++)
+    for (int x = 0; x < 600; x++) {
+      double ground = 1 - .3 * noise_at(x / 5, y / 5, 1) - .2 * noise_at(x / 2, y / 2, 2);
+      picture_set(&p, x, y, 0, (float)((.2 + .8 * x / 600) * ground));
+    }
+  return p;
+}
+
+/* Octaves by which the hole's contrast grows from left to right, from step to step. */
+static double contrast_grows(const picture *p) {
+  double squares[2] = {0, 0};
+  for (int y = 90; y < 210; y++)
+    for (int x = 180; x < 240; x++)
+      for (int k = 0; k < 2; k++) {
+        int at = k ? x + 180 : x;
+        double step = picture_get(p, at + 1, y, 0) - picture_get(p, at, y, 0);
+        squares[k] += step * step;
+      }
+  return log2(squares[1] / squares[0]) / 2;
+}
+
+/* How far that is off what was there: mean over seeds. */
+static double contrast_off(const char *settings) {
+  picture truth = ground_in_drifting_light();
+  double sum = 0;
+  for (int seed = 0; seed < 3; seed++) {
+    task t = task_new(picture_copy(&truth), settings);
+    t.params.seed = seed;
+    task_hole(&t, (area){170, 80, 430, 220});
+    task_succeeds(&t);
+    sum += fabs(contrast_grows(&t.result) - contrast_grows(&truth)) / 3;
+    task_clear(&t);
+  }
+  picture_clear(&truth);
+  g_test_message("%s: %.3f octaves off", settings, sum);
+  return sum;
+}
+
+static void contrast_follows_the_light(void) {
+  g_assert_cmpfloat(contrast_off("orientation=frontal"), <, .32);
+  g_assert_cmpfloat(contrast_off("orientation=frontal engine-light=0"), >, .4);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/tone/drift", drift_leaves_no_seam);
@@ -295,5 +341,6 @@ int main(int argc, char **argv) {
   g_test_add_func("/tone/tiles", tiles_keep_their_tone);
   g_test_add_func("/tone/step", steps_stay);
   g_test_add_func("/tone/cut", cut_things_do_not_shine);
+  g_test_add_func("/tone/contrast", contrast_follows_the_light);
   return g_test_run();
 }
