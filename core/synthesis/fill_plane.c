@@ -295,9 +295,12 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   }
   if (params->engine_tracks && !problem->synthesis)
     RC_TRY(take_tracks(context, &e, &tone, &tracks));
+  /* Of a plane that recedes only the hole's own scales are copied, which keeps sky from ground; a
+   * price on light would only leave fewer sources. */
+  bool frontal = problem->line.a == 0 && problem->line.b == 0;
   RC_TRY(rc_conditions_find(context, e.images, e.flags, e.level_count, &tone,
-                            127 / (DEVIATIONS * e.gain), params->engine_focus, params->engine_light,
-                            &e.conditions));
+                            127 / (DEVIATIONS * e.gain), params->engine_focus,
+                            params->engine_light && frontal, &e.conditions));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   RC_TRY(rc_descend(context, &e, &finest));
