@@ -1,6 +1,6 @@
 /* The conditions under which a place was taken: how blurred it is, and in what light. What is out
  * of focus is even, so that averages of anything fit it, but a blurred copy among sharp stones is
- * seen at once; and a cloud on the sand, lit like sand, too. */
+ * seen at once; and what is relit has the contrast of its old light. */
 #ifndef RECEDE_SYNTHESIS_CONDITIONS_H
 #define RECEDE_SYNTHESIS_CONDITIONS_H
 
