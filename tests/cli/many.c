@@ -2,18 +2,22 @@
  * libraries than the command takes for a small picture. Every run is a child of its own, which
  * lives from the command's main() to its return.
  *
- * From standard input, each ended by a zero byte: the path of a file for the run's standard error,
- * the arguments, an empty one. To standard output, a line for each run: its exit code, or the
- * signal that ended it, negative. Resource limits are those it is started with. */
+ * From standard input, each ended by a zero byte: the paths of files for the run's standard output
+ * and error, the arguments, an empty one. To standard output, a line for each run: its exit code,
+ * or the signal that ended it, negative. Resource limits are those it is started with. */
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #define MOST_ARGUMENTS 64
 
 int recede_main(int argc, char **argv); /* the command's main() */
+
+/* Says what is lost, as it does at an exit; there under ASan alone. */
+extern int __lsan_do_recoverable_leak_check(void) __attribute__((weak));
 
 /* How many before the empty one; 0 at the end of the input. */
 static int read_words(char **words) {
@@ -30,27 +34,28 @@ static int read_words(char **words) {
   exit(EXIT_FAILURE);
 }
 
-static void become_command(int count, char **words) {
-  int null = open("/dev/null", O_RDWR);
-  int said = open(words[0], O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  if (null < 0 || said < 0) _exit(126);
-  dup2(null, STDIN_FILENO);
-  dup2(null, STDOUT_FILENO);
-  dup2(said, STDERR_FILENO);
-  close(null);
-  close(said);
-  static char name[] = "recede";
-  words[0] = name;
-  words[count] = NULL;
-  int code = recede_main(count, words);
+static void replace(int descriptor, const char *path, int flags) {
+  int opened = open(path, flags, 0600);
+  if (opened < 0 || dup2(opened, descriptor) < 0) _exit(126);
+  close(opened);
+}
+
+static void become_command(int count, char *const *words) {
+  replace(STDIN_FILENO, "/dev/null", O_RDONLY);
+  replace(STDOUT_FILENO, words[0], O_WRONLY | O_CREAT | O_TRUNC);
+  replace(STDERR_FILENO, words[1], O_WRONLY | O_CREAT | O_TRUNC);
+  char name[] = "recede", *arguments[MOST_ARGUMENTS] = {name};
+  memcpy(arguments + 1, words + 2, (size_t)(count - 2) * sizeof *words);
+  int code = recede_main(count - 1, arguments);
   fflush(NULL);
+  if (__lsan_do_recoverable_leak_check) __lsan_do_recoverable_leak_check();
   /* Not exit(): one of the libraries has threads from the start, which a fork does not copy, and
    * waits for them at the end. */
   _exit(code);
 }
 
 int main(void) {
-  char *words[MOST_ARGUMENTS];
+  static char *words[MOST_ARGUMENTS];
   int count, status;
   while ((count = read_words(words)) > 0) {
     pid_t child = fork();

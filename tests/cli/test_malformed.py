@@ -34,8 +34,9 @@ def commands(folder):
 
 def read_with(many, path):
     """Has the command read all pixels of the file; returns its exit code."""
-    code, text = many.run("scale-map", path, "--frontal", "--force", "-q", "-o",
-                          path.parent / "out.png")
+    done = many.run("scale-map", path, "--frontal", "--force", "-q", "-o",
+                    path.parent / "out.png")
+    code, text = done.returncode, done.stderr.decode(errors="replace")
     check(code in (0, 3, 5), path.name, "ended with", code, text)
     check(code == 0 or "recede: " in text, path.name, "says nothing")
     return code

@@ -143,8 +143,8 @@ def fill_up(many, folder, disk, suffix, kind):
             out.write_bytes(before)
         free = os.statvfs(disk).f_bavail * os.statvfs(disk).f_frsize
         (disk / "ballast").write_bytes(bytes(free - size * number // SIZES // PAGE * PAGE))
-        code, _ = many.run(*arguments, "-o", out, "--force")
-        check_failed_write(code, out, before)
+        done = many.run(*arguments, "-o", out, "--force")
+        check_failed_write(done.returncode, out, before)
 
 
 def test_kill_at_any_moment(folder):
