@@ -153,8 +153,9 @@ def test_kill_at_any_moment(folder):
     ends = {"absent": 0, "old": 0, "complete": 0}
     for suffix, kind in SUFFIXES.items():
         arguments = job(folder, suffix, kind)
-        began = time.monotonic()
         whole = expected(folder, arguments, suffix)
+        began = time.monotonic()
+        start(*arguments, "-o", folder / f"usual.{suffix}").communicate()
         usual = time.monotonic() - began
         out = folder / f"out.{suffix}"
         for number in range(4 if harness.SANITIZED else 25):
@@ -169,6 +170,7 @@ def test_kill_at_any_moment(folder):
             check(content in ((OLD, whole) if number % 2 else (None, whole)), suffix, "torn")
             ends["complete" if content == whole else "old" if content else "absent"] += 1
     print("#", ends)
+    check(harness.SANITIZED or ends["complete"], "killed before it wrote, each time")
     for path in strays(folder):  # allowed after kill -9, under this name
         check(path.name.endswith(".tmp"))
         path.unlink()
