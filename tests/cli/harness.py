@@ -1,8 +1,7 @@
 """What the tests of the command share: running it, pictures made for it, and TAP.
 
-A test file defines functions named test_*; its last line is `harness.main(globals())`. The first
-argument is the command, the second, where a test needs it, many.c. A test fails by an exception,
-mostly from check().
+A test file defines functions named test_*; its last line is `harness.main(globals())`. The
+arguments are the command and many.c. A test fails by an exception, mostly from check().
 """
 import json
 import os
@@ -22,8 +21,7 @@ import numpy as np  # noqa: E402
 
 RECEDE = os.path.abspath(sys.argv[1])
 TEXTURE = Path(__file__).parents[1] / "data" / "brick_regular.png"
-# In a test that is given many.c: recede() runs there what asks for nothing of its own, and returns
-# from main(): no --help, which exits.
+# recede() runs there what asks for no process of its own, and returns from main(): --help exits.
 MANY = None
 # Generous: a sanitizer's build is twenty times slower than the command.
 TIME_LIMIT_S = 60
@@ -50,9 +48,9 @@ def check(condition, *explanation):
         raise Failure(" ".join(str(part) for part in explanation) or "condition not met")
 
 
-def checked(done):
-    """Of a finished process: nothing that a sanitizer found."""
-    text = done.stderr.decode(errors="replace")
+def checked(done, more=b""):
+    """Of a finished process: nothing that a sanitizer found, in its words or in more."""
+    text = (done.stderr + more).decode(errors="replace")
     check("Sanitizer" not in text and "runtime error" not in text, done.args, text)
     return done
 
@@ -60,7 +58,7 @@ def checked(done):
 def recede(*arguments, code=0, environment=None, prepare=None, limit_s=TIME_LIMIT_S, folder=None):
     """Runs the command, checks its exit code (None: any), and returns the finished process."""
     words = [os.fspath(a) if isinstance(a, Path) else str(a) for a in arguments]
-    if MANY and all(words) and not (environment or prepare or folder):
+    if all(words) and "--help" not in words and not (environment or prepare or folder):
         done = MANY.run(*words)
     else:
         try:
@@ -80,7 +78,7 @@ class Many:
     of the time."""
 
     def __init__(self, folder, prepare=None, environment=None):
-        self.out, self.error = folder / "stdout", folder / "stderr"
+        self.paths = [folder / name for name in ("stdout", "stderr", "leaks")]
         self.process = subprocess.Popen([os.path.abspath(sys.argv[2])], stdin=subprocess.PIPE,
                                         stdout=subprocess.PIPE, preexec_fn=prepare,
                                         start_new_session=True,
@@ -96,7 +94,7 @@ class Many:
 
     def run(self, *arguments):
         """The finished process; for a run that a signal ended, its code is minus the number."""
-        words = [self.out, self.error, *arguments, ""]
+        words = [*self.paths, *arguments, ""]
         self.process.stdin.write(b"".join(os.fsencode(str(word)) + b"\0" for word in words))
         self.process.stdin.flush()
         ready, _, _ = select.select([self.process.stdout], [], [], TIME_LIMIT_S)
@@ -104,8 +102,9 @@ class Many:
             os.killpg(self.process.pid, signal.SIGKILL)
             raise Failure(f"took more than {TIME_LIMIT_S} s: {arguments}")
         code = int(self.process.stdout.readline())
-        return checked(subprocess.CompletedProcess(arguments, code, self.out.read_bytes(),
-                                                   self.error.read_bytes()))
+        out, error = (path.read_bytes() for path in self.paths[:2])
+        leaks = self.paths[2].read_bytes() if code >= 0 else b""
+        return checked(subprocess.CompletedProcess(arguments, code, out, error), leaks)
 
 
 def report_of(*arguments, **options):
@@ -209,7 +208,5 @@ def main(names):
     signal.signal(signal.SIGINT, signal.default_int_handler)
     tests = [value for name, value in names.items() if name.startswith("test_")]
     print(f"1..{len(tests)}")
-    if len(sys.argv) < 3:
-        sys.exit(run_all(tests) > 0)
     with tempfile.TemporaryDirectory(prefix="recede-test-") as folder, Many(Path(folder)) as MANY:
         sys.exit(run_all(tests) > 0)

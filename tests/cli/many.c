@@ -3,8 +3,9 @@
  * lives from the command's main() to its return.
  *
  * From standard input, each ended by a zero byte: the paths of files for the run's standard output
- * and error, the arguments, an empty one. To standard output, a line for each run: its exit code,
- * or the signal that ended it, negative. Resource limits are those it is started with. */
+ * and error and for what is found of leaks, the arguments, an empty one. To standard output, a line
+ * for each run: its exit code, or the signal that ended it, negative. Resource limits are those it
+ * is started with. */
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,6 +14,7 @@
 #include <unistd.h>
 
 #define MOST_ARGUMENTS 64
+#define PATHS 3
 
 int recede_main(int argc, char **argv); /* the command's main() */
 
@@ -45,9 +47,11 @@ static void become_command(int count, char *const *words) {
   replace(STDOUT_FILENO, words[0], O_WRONLY | O_CREAT | O_TRUNC);
   replace(STDERR_FILENO, words[1], O_WRONLY | O_CREAT | O_TRUNC);
   char name[] = "recede", *arguments[MOST_ARGUMENTS] = {name};
-  memcpy(arguments + 1, words + 2, (size_t)(count - 2) * sizeof *words);
-  int code = recede_main(count - 1, arguments);
+  memcpy(arguments + 1, words + PATHS, (size_t)(count - PATHS) * sizeof *words);
+  int code = recede_main(count - PATHS + 1, arguments);
   fflush(NULL);
+  /* It also talks of threads that a fork lacks. */
+  replace(STDERR_FILENO, words[2], O_WRONLY | O_CREAT | O_TRUNC);
   if (__lsan_do_recoverable_leak_check) __lsan_do_recoverable_leak_check();
   /* Not exit(): one of the libraries has threads from the start, which a fork does not copy, and
    * waits for them at the end. */
