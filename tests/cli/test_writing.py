@@ -88,7 +88,7 @@ def check_failed_write(code, out, before):
 
 
 def noisy_job(folder, suffix, kind, size=220):
-    """An output of some hundred kB: noise packs badly."""
+    """An output of some hundred kB: noise packs badly. Without the stages that look at all of it."""
     noise = random.Random(5).randbytes(size * size * 3)
     pixels = harness.np.frombuffer(noise, harness.np.uint8).reshape(size, size, 3)
     if kind != "u8":
@@ -98,7 +98,8 @@ def noisy_job(folder, suffix, kind, size=220):
         suffix = "png"
     image = write(folder / f"in.{suffix}", pixels, half=kind == "half")
     mask = write(folder / "mask.png", hole(size, size))
-    return ["fill", image, "--mask", mask, "--frontal", "-q", "--quality", "draft"]
+    fast = [f"--set=engine-{stage}=0" for stage in ("periods", "alike", "spots", "lines")]
+    return ["fill", image, "--mask", mask, "--frontal", "-q", "--quality", "draft", *fast]
 
 
 def test_file_size_limit(folder):
