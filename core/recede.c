@@ -153,7 +153,7 @@ static uint64_t bytes_of_fill(const recede_job *job, uint64_t pixels, uint64_t c
   int colours = job->image.channels < 3 ? 1 : 3;
   uint64_t problem = pixels * (uint64_t)(colours * 4 + 1) + ((uint64_t)4 << 20);
   return problem + (job->params.method == RECEDE_METHOD_PLANE
-                        ? rc_plane_bytes(pixels, columns, rows, colours)
+                        ? rc_plane_bytes(pixels, columns, rows, colours, &job->params)
                         : pixels * (uint64_t)(colours * 4) +
                               rc_paper_bytes(pixels, columns * rows, colours, &job->params));
 }

@@ -47,7 +47,7 @@ static recede_status start_once(rc_context *context, const rc_descent *e, const 
                       .key = rc_key((uint64_t)e->params->seed, 99, (uint32_t)trial),
                       .periods = e->periods,
                       .period_count = e->period_count,
-                      .anywhere = rc_effort_of(e)->start_tries};
+                      .anywhere = rc_effort_of(e->params)->start_tries};
   rc_keep_to_lattice(e, e->level_count - 1, &search);
   if (trial < s->first_whole) return rc_start(context, level, &search);
   return rc_start_whole(context, level, search.key, s->moves, s->move_count,
@@ -213,7 +213,7 @@ static recede_status try_lattice(rc_context *context, rc_descent *e, int first, 
 recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *level,
                               rc_workspace *scratch) {
   int exponent = e->level_count - 1, wanted = e->params->engine_starts;
-  int plain = rc_trials_worth(level, wanted ? wanted : rc_effort_of(e)->starts);
+  int plain = rc_trials_worth(level, wanted ? wanted : rc_effort_of(e->params)->starts);
   int half = (plain + 1) / 2, iterations = rc_iterations_at(e, exponent);
   uint64_t key = rc_key((uint64_t)e->params->seed, 99, 0);
   double misfit;

@@ -14,32 +14,33 @@
 /* Each px deeper in the hole counts 1.3 times less; 1.15 is too trusting. */
 #define CONFIDENCE_FALLOFF 1.3f
 
-/* A cut through so many pixels takes .1 s, and one through so large a box 5 MB. */
 #define LEAST_CUT_LEVEL 1
-#define MOST_CUT 12000
-#define MOST_CUT_BOX 30000
 
 /* The finest level that is searched: what it settles on is composed. */
 static int last_searched(const rc_descent *e) { return rc_iterations_at(e, 0) ? 0 : 1; }
 
-/* Boards are filled one by one; and a seam across a lane costs little, but cuts it off. */
-static bool may_cut(const rc_descent *e) {
-  return e->params->engine_cuts && rc_effort_of(e)->cuts && !e->on_rails && !e->line_count;
-}
-
-static bool can_be_cut(const rc_mask *flags) {
+static bool can_be_cut(const rc_mask *flags, int most_px) {
   rc_box box = rc_box_of(flags, RC_TARGET);
   int64_t targets = 0;
   for (size_t i = 0; i < (size_t)flags->width * (size_t)flags->height; i++)
     targets += (flags->data[i] & RC_TARGET) != 0;
-  return targets <= MOST_CUT && (int64_t)(box.x1 - box.x0) * (box.y1 - box.y0) <= MOST_CUT_BOX;
+  return targets <= most_px &&
+         (uint64_t)(box.x1 - box.x0) * (uint64_t)(box.y1 - box.y0) <= rc_most_cut_box(most_px);
 }
 
 /* The finest that can be; finer ones refine what lies beside the seams. */
 static int find_cut_level(const rc_descent *e) {
-  int exponent = LEAST_CUT_LEVEL;
-  while (exponent < e->level_count && !can_be_cut(&e->flags[exponent])) exponent++;
+  int exponent = LEAST_CUT_LEVEL, most_px = rc_effort_of(e->params)->cut_px;
+  while (exponent < e->level_count && !can_be_cut(&e->flags[exponent], most_px)) exponent++;
   return exponent;
+}
+
+static bool is_cut(const rc_descent *e, int exponent) {
+  const rc_effort *by = rc_effort_of(e->params);
+  /* Boards are filled one by one; and a seam across a lane costs little, but cuts it off. */
+  if (!e->params->engine_cuts || !by->cut_px || e->on_rails || e->line_count) return false;
+  return exponent == e->cut_level ||
+         (exponent < e->cut_level && can_be_cut(&e->flags[exponent], by->cut_again_px));
 }
 
 static recede_status search_level(rc_context *context, rc_descent *e, int exponent,
@@ -53,7 +54,7 @@ static recede_status search_level(rc_context *context, rc_descent *e, int expone
     if (e->on_rails) RC_TRY(rc_boards_mark(context, &e->rails, exponent, level));
     RC_TRY(rc_iterate(context, e, exponent, 0, 0, p.total, &p, level, &scratch));
   }
-  if (may_cut(e) && exponent == e->cut_level)
+  if (is_cut(e, exponent))
     RC_TRY(rc_cut_copies(context, e->kernels, e->params->engine_usage && !e->repeats, level));
   return exponent == last_searched(e) ? rc_settle(context, e, level, &scratch) : RECEDE_OK;
 }

@@ -11,6 +11,7 @@
 #include "synthesis/alike.h"
 #include "synthesis/boundary.h"
 #include "synthesis/compose.h"
+#include "synthesis/cuts.h"
 #include "synthesis/descent.h"
 #include "synthesis/detail.h"
 #include "synthesis/gauge.h"
@@ -227,7 +228,7 @@ static recede_status compose(rc_context *context, const rc_descent *e, const rc_
   RC_TRY(RC_NEW(context, 1, &sampler));
   rc_sampler_init(sampler, !e->params->engine_spline);
   return rc_compose(context, finest, sampler, e->images, e->level_count,
-                    e->params->engine_join ? &rc_effort_of(e)->join : NULL, residual);
+                    e->params->engine_join ? &rc_effort_of(e->params)->join : NULL, residual);
 }
 
 /* Takes away what looks unlike all that is beside the hole. A drift was measured on that, too: with
@@ -314,15 +315,18 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   return rc_tone_apply(context, &tone, &problem->flags, RC_TARGET, 1, filled);
 }
 
-uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int channels) {
+uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int channels,
+                        const recede_params *params) {
   uint64_t c = (uint64_t)channels, box = columns * rows;
+  uint64_t most_cut = rc_most_cut_box(rc_effort_of(params)->cut_again_px);
+  uint64_t cuts = RC_CUT_BYTES_PER_PX * (box < most_cut ? box : most_cut);
   uint64_t grown = 4 * box + (256 << 10); /* the box that detail is measured in */
   /* Levels, and of the coarser ones what their pixels are compared by. */
   uint64_t pyramid = pixels * (4 * c + 1) / 3 + pixels * 4 / 3;
   /* Of the coarser levels, 1/3 of the finest, only the fields stay; the coarsest alone has sources
    * in order, but it may be the only one. */
   uint64_t levels = pixels * (4 + 1 + 1 + 4) + box * (12 + 4 + 1 + 1) * 4 / 3;
-  uint64_t search = box * (12 + 4 + 4) * 2 + pixels * (4 + 1);
+  uint64_t search = box * (12 + 4 + 4) * 2 + pixels * (4 + 1) + cuts;
   uint64_t pads = rows * (40 * c + 20) + 16 * c * (columns + 5);
   uint64_t composition = box * (12 * c + 4) + pads;
   uint64_t detail = (grown < pixels ? grown : pixels) * (12 * c + 1) + pixels;

@@ -15,7 +15,9 @@ typedef struct rc_effort {
   int finest_iterations; /* and these at the finest; 0: only takes the coarser copies over */
   int anywhere;          /* random candidates per pixel from all sources, coarsest level */
   int local_radius;      /* largest radius of the random candidates nearby, px */
-  bool cuts;             /* whether seams are led by cuts */
+  int cut_px;            /* seams are led by cuts at the finest level, but the very finest, that has
+                            no more px of hole; 0: nowhere */
+  int cut_again_px;      /* and once more at each finer one that has no more */
   rc_join join;
 } rc_effort;
 
@@ -30,7 +32,7 @@ typedef struct rc_pace {
   int done, total;
 } rc_pace;
 
-const rc_effort *rc_effort_of(const rc_descent *e);
+const rc_effort *rc_effort_of(const recede_params *params);
 int rc_iterations_at(const rc_descent *e, int exponent);
 recede_status rc_workspace_new(rc_context *context, const rc_descent *e, int exponent,
                                const rc_level *level, rc_workspace *scratch);

@@ -142,11 +142,14 @@ static void judge_stones(const char *settings, double *chips, double *repeated) 
 }
 
 static void stones_stay_whole(void) {
-  double chips, repeated, chips_without, repeated_without;
+  double chips, repeated, chips_without, repeated_without, chips_best, repeated_best;
   judge_stones("", &chips, &repeated);
   judge_stones("engine-cuts=0", &chips_without, &repeated_without);
+  judge_stones("quality=best", &chips_best, &repeated_best);
   g_assert_cmpfloat(chips, <, .6 * chips_without);
   g_assert_cmpfloat(repeated, <, .5 * repeated_without);
+  g_assert_cmpfloat(chips_best, <, .9 * chips);
+  g_assert_cmpfloat(repeated_best, <, .03);
 }
 
 /* Stripes as regular as any grid of samples, which must not see one of their two shades alone. */
