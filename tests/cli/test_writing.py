@@ -88,7 +88,7 @@ def check_failed_write(code, out, before):
 
 
 def noisy_job(folder, suffix, kind, size=220):
-    """An output of some hundred kB: noise packs badly. Without the stages that look at all of it."""
+    """An output of some hundred kB: noise packs badly; without the stages that look at it all."""
     noise = random.Random(5).randbytes(size * size * 3)
     pixels = harness.np.frombuffer(noise, harness.np.uint8).reshape(size, size, 3)
     if kind != "u8":
