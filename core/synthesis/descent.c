@@ -14,6 +14,7 @@
 /* Each px deeper in the hole counts 1.3 times less; 1.15 is too trusting. */
 #define CONFIDENCE_FALLOFF 1.3f
 
+/* The finest level refines the first cut. */
 #define LEAST_CUT_LEVEL 1
 
 /* The finest level that is searched: what it settles on is composed. */
