@@ -201,7 +201,7 @@ static recede_status prepare(rc_context *context, bool price_uses, cuts *c) {
 }
 
 /* What the own copies cost, and in which unit. */
-static void price_own(cuts *c) {
+static recede_status price_own(rc_context *context, cuts *c) {
   const rc_level *level = c->level;
   double changes = 0, count = 0;
   rc_query query;
@@ -210,13 +210,16 @@ static void price_own(cuts *c) {
     for (int k = 1; k < 5 && c->part[at]; k++, count++)
       changes += (double)square_apart(&c->own[5 * at], &c->own[5 * at + (size_t)k]);
   c->unit = (float)(UNIT_OF_CHANGES * changes / fmax(count, 1)) + LEAST_UNIT;
-  for (int y = level->box.y0; y < level->box.y1; y++)
+  for (int y = level->box.y0; y < level->box.y1; y++) {
     for (int x = level->box.x0; x < level->box.x1; x++) {
       size_t at = grid_at(c, x, y);
       if (c->part[at])
         c->cost[at] =
             cost_at(c, &query, level->field[rc_level_at(level, x, y)], &c->own[5 * at], x, y);
     }
+    RC_TRY(rc_poll(context));
+  }
+  return RECEDE_OK;
 }
 
 /* Adds what the seams between a pixel and its neighbour, right or below, ask for. */
@@ -287,7 +290,7 @@ static recede_status find_copies(rc_context *context, const rc_level *level,
   *count = 0;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, pixels, &found));
-  for (int y = level->box.y0; y < level->box.y1; y++)
+  for (int y = level->box.y0; y < level->box.y1; y++) {
     for (int x = level->box.x0; x < level->box.x1; x++) {
       rc_copy copy = level->field[rc_level_at(level, x, y)];
       int i = all - 1;
@@ -296,6 +299,8 @@ static recede_status find_copies(rc_context *context, const rc_level *level,
       if (i < 0) i = all++, found[i] = (candidate){copy, 0};
       found[i].pixels++;
     }
+    RC_TRY(rc_poll(context));
+  }
   while (*count < MOST_COPIES) {
     int most = 0;
     for (int i = 1; i < all; i++)
@@ -316,7 +321,7 @@ recede_status rc_cut_copies(rc_context *context, const rc_kernels *kernels, bool
   RC_TRY(find_copies(context, level, copies, &count));
   rc_block *mark = rc_mark(context);
   RC_TRY(prepare(context, price_uses, &c));
-  price_own(&c);
+  RC_TRY(price_own(context, &c));
   for (int round = 0; round < ROUNDS; round++) {
     int left = 0;
     for (int i = 0; i < count; i++) {

@@ -40,6 +40,7 @@ static bool is_cut(const rc_descent *e, int exponent) {
   const rc_effort *by = rc_effort_of(e->params);
   /* Boards are filled one by one; and a seam across a lane costs little, but cuts it off. */
   if (!e->params->engine_cuts || !by->cut_px || e->on_rails || e->line_count) return false;
+  if (e->cut_level == e->level_count) return false;
   return exponent == e->cut_level ||
          (exponent < e->cut_level && can_be_cut(&e->flags[exponent], by->cut_again_px));
 }

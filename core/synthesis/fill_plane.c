@@ -319,7 +319,8 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int ch
                         const recede_params *params) {
   uint64_t c = (uint64_t)channels, box = columns * rows;
   uint64_t most_cut = rc_most_cut_box(rc_effort_of(params)->cut_again_px);
-  uint64_t cuts = RC_CUT_BYTES_PER_PX * (box < most_cut ? box : most_cut);
+  uint64_t cut = box < most_cut ? box : most_cut, frame = 2 * (columns + rows) + 4;
+  uint64_t cuts = most_cut ? RC_CUT_BYTES_PER_PX * (cut + frame) : 0;
   uint64_t grown = 4 * box + (256 << 10); /* the box that detail is measured in */
   /* Levels, and of the coarser ones what their pixels are compared by. */
   uint64_t pyramid = pixels * (4 * c + 1) / 3 + pixels * 4 / 3;

@@ -10,6 +10,8 @@ enum { NO_PARENT = -1, THE_END = -2, ORPHAN = -3 };
 #define LAST -1   /* of a queue */
 #define NOT_IN -2 /* any */
 #define FAR INT32_MAX
+/* Takes some 10 ms. */
+#define PIXELS_TO_POLL 10000
 
 typedef struct cut {
   rc_grid *g;
@@ -204,8 +206,9 @@ recede_status rc_grid_cut(rc_context *context, rc_grid *grid, uint8_t *at_sink) 
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, count + 1, &c.orphans));
   plant(&c);
-  while ((pixel = take_active(&c)) != LAST) {
+  for (int taken = 1; (pixel = take_active(&c)) != LAST; taken++) {
     int met;
+    if (taken % PIXELS_TO_POLL == 0) RC_TRY(rc_poll(context));
     while (grid->tree[pixel] != FREE && (met = grow(&c, pixel)) >= 0) {
       bool forward = grid->tree[pixel] == OF_SOURCE;
       c.now++;

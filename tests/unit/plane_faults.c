@@ -338,6 +338,8 @@ static void peak_within_the_estimate(void) {
     check_memory(300, 200, (area){100, 80, 130, 120}, channels, qualities[i / 2]);
   }
   check_memory(300, 200, (area){10, 20, 290, 180}, 3, qualities[1]);
+  check_memory(300, 200, (area){10, 20, 290, 180}, 3, qualities[2]);
+  check_memory(1400, 120, (area){50, 40, 1350, 82}, 3, qualities[2]);
   check_memory(1000, 700, (area){500, 400, 540, 430}, 3, qualities[0]);
   check_memory(1000, 700, (area){50, 300, 950, 330}, 1, qualities[0]);
   check_memory(1000, 700, (area){300, 200, 700, 500}, 3, qualities[0]);
