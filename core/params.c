@@ -68,8 +68,8 @@ static const recede_param_info table[] = {
     CHOICE("method", method, N_("_Method"), N_("How the region is filled"), 0, methods,
            method_labels, COMMON),
     CHOICE("quality", quality, N_("_Quality"),
-           N_("Draft is for previews; best also leads seams between stones or leaves in the "
-              "finest detail, and takes longer"),
+           N_("Draft is for previews; best leads seams between stones or leaves in finer "
+              "detail, too, and takes longer"),
            1, qualities, quality_labels, COMMON),
     INT("seed", seed, N_("See_d"), N_("Another seed gives another fill"), 0, 2147483647, 0, COMMON),
     POINTS("horizon", horizon, N_("Horizon"), N_("Two points of the horizon: X1,Y1,X2,Y2"), 4),

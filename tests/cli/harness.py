@@ -23,6 +23,7 @@ RECEDE = os.path.abspath(sys.argv[1])
 TEXTURE = Path(__file__).parents[1] / "data" / "brick_regular.png"
 # recede() runs there what asks for no process of its own, and returns from main(): --help exits.
 MANY = None
+ONE_BY_ONE = "RECEDE_TEST_ONE_BY_ONE" in os.environ
 # Generous: a sanitizer's build is twenty times slower than the command.
 TIME_LIMIT_S = 60
 
@@ -58,7 +59,8 @@ def checked(done, more=b""):
 def recede(*arguments, code=0, environment=None, prepare=None, limit_s=TIME_LIMIT_S, folder=None):
     """Runs the command, checks its exit code (None: any), and returns the finished process."""
     words = [os.fspath(a) if isinstance(a, Path) else str(a) for a in arguments]
-    if all(words) and "--help" not in words and not (environment or prepare or folder):
+    if all(words) and "--help" not in words and not (environment or prepare or folder
+                                                     or ONE_BY_ONE):
         done = MANY.run(*words)
     else:
         try:
@@ -94,6 +96,7 @@ class Many:
 
     def run(self, *arguments):
         """The finished process; for a run that a signal ended, its code is minus the number."""
+        self.paths[2].write_bytes(b"")
         words = [*self.paths, *arguments, ""]
         self.process.stdin.write(b"".join(os.fsencode(str(word)) + b"\0" for word in words))
         self.process.stdin.flush()
@@ -102,8 +105,7 @@ class Many:
             os.killpg(self.process.pid, signal.SIGKILL)
             raise Failure(f"took more than {TIME_LIMIT_S} s: {arguments}")
         code = int(self.process.stdout.readline())
-        out, error = (path.read_bytes() for path in self.paths[:2])
-        leaks = self.paths[2].read_bytes() if code >= 0 else b""
+        out, error, leaks = (path.read_bytes() for path in self.paths)
         return checked(subprocess.CompletedProcess(arguments, code, out, error), leaks)
 
 

@@ -36,8 +36,10 @@ def elsewhere(picture, box):
 
 
 def test_a_roof_keeps_its_rows(folder):
-    """Tiles laid by hand, in rows that bend. By chance copies lie half a tile off, and merge."""
+    """Tiles laid by hand, in rows that bend. By chance copies lie half a tile off, and merge. Judged
+    with half a tile of the roof around the hole, for a single copy is like its source anywhere."""
     image, box = IMAGES / "roofs.jpg", (379, 444, 285, 376)
+    around = (box[0] - 10, box[1] + 10, box[2] - 10, box[3] + 10)
     picture = read(image)
     mask = write(folder / "mask.png", hole(*picture.shape[:2], box))
     slope = np.array([(205, 296), (339, 301), (474, 416), (422, 478), (141, 478), (173, 406)])
@@ -50,10 +52,10 @@ def test_a_roof_keeps_its_rows(folder):
             out = folder / f"{lattice}-{seed}.png"
             recede("fill", image, "--mask", mask, "--source", source, "-o", out, "--frontal", "-q",
                    "--seed", seed, "--set", f"engine-lattice={lattice}")
-            kept[lattice].append(elsewhere(read(out), box))
+            kept[lattice].append(elsewhere(read(out), around))
     means = {lattice: np.mean(values) for lattice, values in kept.items()}
-    print("#", kept, "the roof itself", elsewhere(picture, box))
-    check(means[1] > .3 and means[1] > means[0] + .04, kept)
+    print("#", kept, "the roof itself", elsewhere(picture, around))
+    check(means[1] > .25 and means[1] > means[0] + .03, kept)
 
 
 if __name__ == "__main__":
