@@ -36,8 +36,8 @@ def elsewhere(picture, box):
 
 
 def test_a_roof_keeps_its_rows(folder):
-    """Tiles laid by hand, in rows that bend. By chance copies lie half a tile off, and merge. Judged
-    with half a tile of the roof around the hole, for a single copy is like its source anywhere."""
+    """Tiles laid by hand, in rows that bend. By chance copies lie half a tile off, and merge.
+    Judged with half a tile of roof around the hole: a single copy is like its source anywhere."""
     image, box = IMAGES / "roofs.jpg", (379, 444, 285, 376)
     around = (box[0] - 10, box[1] + 10, box[2] - 10, box[3] + 10)
     picture = read(image)
