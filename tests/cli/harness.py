@@ -56,7 +56,7 @@ def checked(done, more=b""):
     return done
 
 
-def recede(*arguments, code=0, environment=None, prepare=None, limit_s=TIME_LIMIT_S, folder=None):
+def recede(*arguments, code=0, environment=None, prepare=None, folder=None):
     """Runs the command, checks its exit code (None: any), and returns the finished process."""
     words = [os.fspath(a) if isinstance(a, Path) else str(a) for a in arguments]
     if all(words) and "--help" not in words and not (environment or prepare or folder
@@ -64,11 +64,11 @@ def recede(*arguments, code=0, environment=None, prepare=None, limit_s=TIME_LIMI
         done = MANY.run(*words)
     else:
         try:
-            done = checked(subprocess.run([RECEDE, *words], capture_output=True, timeout=limit_s,
+            done = checked(subprocess.run([RECEDE, *words], capture_output=True, timeout=TIME_LIMIT_S,
                                           cwd=folder, env={**os.environ, **(environment or {})},
                                           preexec_fn=prepare, stdin=subprocess.DEVNULL))
         except subprocess.TimeoutExpired as late:
-            raise Failure(f"took more than {limit_s} s: {words}") from late
+            raise Failure(f"took more than {TIME_LIMIT_S} s: {words}") from late
     if code is not None:
         check(done.returncode == code, words, "ended with", done.returncode, "not", code,
               done.stderr.decode(errors="replace"))
