@@ -64,9 +64,10 @@ def recede(*arguments, code=0, environment=None, prepare=None, folder=None):
         done = MANY.run(*words)
     else:
         try:
-            done = checked(subprocess.run([RECEDE, *words], capture_output=True, timeout=TIME_LIMIT_S,
-                                          cwd=folder, env={**os.environ, **(environment or {})},
-                                          preexec_fn=prepare, stdin=subprocess.DEVNULL))
+            done = checked(subprocess.run([RECEDE, *words], stdin=subprocess.DEVNULL, cwd=folder,
+                                          capture_output=True, timeout=TIME_LIMIT_S,
+                                          env={**os.environ, **(environment or {})},
+                                          preexec_fn=prepare))
         except subprocess.TimeoutExpired as late:
             raise Failure(f"took more than {TIME_LIMIT_S} s: {words}") from late
     if code is not None:
