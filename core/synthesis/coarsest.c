@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "synthesis/gauge.h"
 #include "synthesis/kept.h"
+#include "synthesis/lattice_find.h"
 #include "synthesis/lock.h"
 #include "synthesis/search.h"
 #include "synthesis/start.h"
@@ -19,8 +20,8 @@
 #define FAVOUR_OF_RAILS 1.3
 #define FAVOUR_OF_LINES 1.8
 #define FAVOUR_OF_CLEAR_LINES 2.
-/* A lattice costs tiles .9 to 1.1 of what any copies do, roof tiles that are all alike 1.4; stones
- * that only lie in rows 1.4 to 1.5. */
+/* A lattice costs tiles and old roofs .7 to 1.1 of what any copies do, stones that only lie in rows
+ * .6 to 1.4, roof tiles that are all alike 1.6 and more: they keep in order by themselves. */
 #define FAVOUR_OF_LATTICE 1.3
 /* What comes from another board is not what this one shows again and again beside the hole. */
 #define FAVOUR_OF_BOARDS 1.25
@@ -48,7 +49,6 @@ static recede_status start_once(rc_context *context, const rc_descent *e, const 
                       .periods = e->periods,
                       .period_count = e->period_count,
                       .anywhere = rc_effort_of(e->params)->start_tries};
-  rc_keep_to_lattice(e, e->level_count - 1, &search);
   if (trial < s->first_whole) return rc_start(context, level, &search);
   return rc_start_whole(context, level, search.key, s->moves, s->move_count,
                         (level->board ? EACH_BOARD : 1) * copies[(trial - s->first_whole) % 3]);
@@ -197,7 +197,7 @@ static recede_status try_lattice(rc_context *context, rc_descent *e, int first, 
   double own;
   bool raised = level->chart.raised;
   RC_TRY(rc_trial_new(context, level, &best));
-  e->on_lattice = true;
+  level->lattice = e->lattice;
   if (e->params->surface != RECEDE_SURFACE_RAISED) level->chart.raised = false;
   RC_TRY(try_starts(context, e, &s, p, level, scratch, &best, &own));
   if (e->line_count) own += price_of_broken_lines(e, level, &best);
@@ -205,7 +205,7 @@ static recede_status try_lattice(rc_context *context, rc_descent *e, int first, 
   if (e->on_lattice)
     rc_trial_restore(level, &best);
   else
-    level->chart.raised = raised;
+    level->chart.raised = raised, level->lattice = (rc_lattice){.spacing = 1};
   e->chart.raised = level->chart.raised;
   return RECEDE_OK;
 }
@@ -221,7 +221,7 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   if (e->params->engine_periods)
     RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count, &e->repeats));
   if (e->params->engine_lattice)
-    RC_TRY(rc_lattice_find(context, level, e->periods, e->period_count, &e->lattice));
+    RC_TRY(rc_lattice_find(context, level, e->periods, e->period_count, &e->bends, &e->lattice));
   /* Where lines cross the hole there are things that go on as a whole. But whole copies that break
    * lines fit well, and must not win over those that continue them. */
   int with_lines = e->line_count ? half : 0, on_rails = rc_runs(&e->rails) ? half : 0;

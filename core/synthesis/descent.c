@@ -86,6 +86,7 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
     level.sides = rc_sides_coarser(e->sides, exponent);
     level.conditions = rc_conditions_coarser(e->conditions, exponent);
     if (!coarsest) level.ranges = coarser.ranges;
+    if (e->on_lattice) level.lattice = rc_lattice_finer(coarser.lattice, 2.f);
     if (exponent >= last_searched(e))
       RC_TRY(rc_level_see(context, &e->images[exponent], &e->traits[exponent], gamma, e->gain,
                           coarsest, &level));

@@ -23,6 +23,7 @@ typedef struct rc_descent {
   rc_copy periods[RC_MOST_PERIODS]; /* px of the coarsest level */
   int period_count;
   rc_lattice lattice;               /* px of the coarsest level */
+  rc_bends bends;                   /* the lattice's */
   bool repeats;                     /* as rc_find_periods says */
   rc_crossing lines[RC_MOST_LINES]; /* px of the finest level */
   int line_count;

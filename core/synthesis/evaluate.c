@@ -72,6 +72,10 @@ void rc_query_set(const rc_level *level, int x, int y, rc_query *query) {
   query->side =
       rc_has_sides(&level->sides) ? rc_side(&level->sides, &level->chart, query->x, query->y) : 0.f;
   query->condition = level->conditions.cells ? rc_condition_at(&level->conditions, x, y) : NULL;
+  if (rc_has_lattice(&level->lattice)) {
+    float w = rc_level_w(level, query->x, query->y);
+    rc_lattice_phases(&level->lattice, query->x / w, query->y / w, query->phases);
+  }
   int c = level->classes[rc_level_at(level, x, y)];
   query->low = level->ranges.low[c];
   query->high = level->ranges.high[c];
@@ -135,11 +139,18 @@ static float price_of_conditions(const rc_level *level, const rc_query *query,
          rc_conditions_price(rc_condition_at(&level->conditions, x, y), query->condition);
 }
 
+static float price_of_lattice(const rc_level *level, const rc_query *query, const rc_place *place) {
+  if (!rc_has_lattice(&level->lattice)) return 0.f;
+  return level->variance *
+         rc_lattice_price(&level->lattice, &level->chart, query->phases, place->x, place->y);
+}
+
 float rc_query_price(const rc_level *level, const rc_query *query, rc_copy copy,
                      const rc_place *place) {
   return rc_query_allows(level, query, copy, place)
              ? rc_place_price(level->variance, place, query->low, query->high) +
-                   price_of_sides(level, query, place) + price_of_conditions(level, query, place)
+                   price_of_sides(level, query, place) + price_of_conditions(level, query, place) +
+                   price_of_lattice(level, query, place)
              : RC_NO_COST;
 }
 
@@ -156,6 +167,7 @@ float rc_query_cost(const rc_level *level, const rc_kernels *kernels, rc_query *
   float price = rc_place_price(level->variance, place, query->low, query->high);
   if (price < limit) price += price_of_sides(level, query, place);
   if (price < limit) price += price_of_conditions(level, query, place);
+  if (price < limit) price += price_of_lattice(level, query, place);
   if (price >= limit || !set_footprint(level, &level->chart, copy, place, &footprint))
     return RC_NO_COST;
   if (!query->gathered) gather(level, query);

@@ -25,6 +25,7 @@ typedef struct rc_query {
   float per_weight;              /* 1 / sum of weights */
   float side;                    /* -1 .. 1 */
   const rc_condition *condition; /* NULL where all have the same */
+  float phases[2];               /* in the lattice, if there is one */
   float x, y;                    /* relative to the chart's origin */
   float low, high;               /* ratios allowed here */
   int32_t px, py;

@@ -11,8 +11,6 @@
 #define PASSES 2
 /* Boards are a little bent; but what the coarsest level is off by the finest is many times. */
 #define RAIL_TOLERANCE_PX .25f
-/* What is laid by hand lies where it should to an eighth of a tile. */
-#define LATTICE_TOLERANCE .12f
 
 /* A cut through 12000 px takes .1 s, through 70000 one. More starts and more iterations than
  * normal's only find what fits ever better, and is bland: of drawn stones .066 are then chips and
@@ -45,12 +43,6 @@ recede_status rc_workspace_new(rc_context *context, const rc_descent *e, int exp
   return RC_NEW(context, (size_t)level->width * (size_t)level->height, &scratch->usage);
 }
 
-void rc_keep_to_lattice(const rc_descent *e, int exponent, rc_search *search) {
-  if (!e->on_lattice) return;
-  search->lattice = rc_lattice_finer(e->lattice, (float)(1 << (e->level_count - 1 - exponent)));
-  search->lattice_tolerance = LATTICE_TOLERANCE;
-}
-
 static rc_search search_of(const rc_descent *e, int exponent, int trial, int iteration, int pass) {
   bool coarsest = exponent == e->level_count - 1;
   return (rc_search){.kernels = e->kernels,
@@ -76,7 +68,6 @@ recede_status rc_iterate(rc_context *context, const rc_descent *e, int exponent,
     for (int pass = 0; pass < PASSES; pass++) {
       rc_search search = search_of(e, exponent, trial, i, pass);
       search.usage = scratch->usage;
-      rc_keep_to_lattice(e, exponent, &search);
       if (scratch->usage) RC_TRY(rc_usage_prices(context, level, scratch->usage));
       RC_TRY(rc_search_pass(context, level, &search, scratch->old));
     }

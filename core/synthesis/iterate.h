@@ -36,8 +36,6 @@ const rc_effort *rc_effort_of(const recede_params *params);
 int rc_iterations_at(const rc_descent *e, int exponent);
 recede_status rc_workspace_new(rc_context *context, const rc_descent *e, int exponent,
                                const rc_level *level, rc_workspace *scratch);
-/* Has the search keep to the lattice where the starts that did fitted well. */
-void rc_keep_to_lattice(const rc_descent *e, int exponent, rc_search *search);
 /* Iterations from .. to - 1 of the trial; only the coarsest level has more than one trial. */
 recede_status rc_iterate(rc_context *context, const rc_descent *e, int exponent, int trial,
                          int from, int to, rc_pace *p, rc_level *level, rc_workspace *scratch);

@@ -1,348 +1,65 @@
 #include "synthesis/lattice.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "base/cholesky.h"
-#include "base/memory.h"
-#include "base/random.h"
 #include "base/real.h"
 #include "synthesis/rails.h"
 
-/* Periods are looked for among so many, strongest first, each with its opposite. They must be so
- * long, px, or nothing tells them from the texture's grain, and span at least so much: sine of the
- * angle between them. */
-#define STRONGEST 16
-#define LEAST_PERIOD_PX 4.f
-#define LEAST_SINE .5f
-/* Phases are measured in cells of the plane one period apart, by all that lies within two cells,
- * weighted by a Gaussian of this many periods. */
-#define SIGMA .8f
-#define WITHIN 2
-/* So many cells to each side of the hole's middle; and cells that see less than this part of the
- * pixels that the fullest does tell nothing. */
-#define HALF_GRID 24
-#define GRID (2 * HALF_GRID + 1)
-#define LEAST_FULL .3
-/* About so many pixels are looked at, of scales near the hole's. */
-#define MOST_PIXELS 100000
-#define PIXELS_KEY 97
-#define WIDEST_RATIO 2.5f
-/* Bends cost so much of what the cells say: where none are, lattices are even. */
-#define RIDGE .01
-/* There is a lattice where so many pairs of cells or more, so far apart that they share no pixels,
- * agree about it as well as this, 1 being wholly: bricks and tiles .75 to 1, an old roof .66 to
- * .86; pebbles, waves, carpets and planks up to .6, and more only where there are few pairs. */
-#define APART 4
-#define LEAST_PAIRS 80
-#define LEAST_AGREEING .65
-/* And where beside the hole it shows as clearly as this part of what it does elsewhere: tiles
- * around a chimney .70 to .76, elsewhere .84 and more. */
-#define LEAST_CLEAR .8
-/* So many pairs of periods are tried. */
-#define MOST_LATTICES 4
+/* Two copies may be off by twice that to each other, a joint's width. By .12 drawn tiles that bend
+ * have double joints, by .08 one picture in six. */
+#define TOLERANCE .04f
+/* In units of the texture's variance, per square of the cycles by which a copy is off by more: a
+ * copy whose tiles lean in another way is followed until it is. By 6 rows break, 96 is as 24. */
+#define PRICE 24.f
 
-typedef struct cell {
-  double pixels, value, phasor[2][2], bare[2][2];
-  bool beside; /* in the hole or beside it */
-} cell;
-
-typedef struct survey {
-  const rc_level *level;
-  rc_lattice *lattice;
-  float spacing;
-  double fullest;
-  cell cells[GRID][GRID];
-} survey;
-
-/* cos and sin of so many turns, Taylor series on an eighth of one. */
-static void turn(float turns, double phasor[2]) {
-  double t = turns - rc_round(turns), quarter = rc_round((float)(4 * t));
-  double v = (t - quarter / 4) * 6.283185307179586, s = v * v;
-  double sine = v * (1 - s / 6 * (1 - s / 20 * (1 - s / 42 * (1 - s / 72))));
-  double cosine = 1 - s / 2 * (1 - s / 12 * (1 - s / 30 * (1 - s / 56)));
-  switch ((int)quarter & 3) {
-    case 0: phasor[0] = cosine, phasor[1] = sine; break;
-    case 1: phasor[0] = -sine, phasor[1] = cosine; break;
-    case 2: phasor[0] = -cosine, phasor[1] = -sine; break;
-    default: phasor[0] = sine, phasor[1] = -cosine;
-  }
-}
-
-/* The angle of (c, s) in turns, -.5 .. .5. */
-static double turns_of(double c, double s) {
-  double x = fabs(c), y = fabs(s), z = y > x ? x / y : x > 0 ? y / x : 0, zz = z * z;
-  double eighth = z * (.1591549 - zz * (.0530 - zz * (.0310 - zz * (.0181 - zz * .00566))));
-  double turns = y > x ? .25 - eighth : eighth;
-  if (c < 0) turns = .5 - turns;
-  return s < 0 ? -turns : turns;
-}
-
-static void bend_terms(const rc_lattice *lattice, float a, float b, double terms[RC_BENDS]) {
-  double s = a / lattice->reach, t = b / lattice->reach;
-  terms[0] = s, terms[1] = t;
-  terms[2] = s * s, terms[3] = s * t, terms[4] = t * t;
-  terms[5] = s * s * s, terms[6] = s * s * t, terms[7] = s * t * t, terms[8] = t * t * t;
-}
-
-static double bent_by(const rc_lattice *lattice, int i, const double terms[RC_BENDS]) {
-  double sum = 0;
-  for (int n = 0; n < RC_BENDS; n++) sum += lattice->bend[i][n] * terms[n];
-  return sum;
-}
-
-/* Periods of an even lattice from the origin to (a, b). */
-static void even_phases(const rc_lattice *l, float a, float b, float phases[2]) {
+void rc_lattice_even_phases(const rc_lattice *l, float a, float b, float phases[2]) {
   float area = l->p.a * l->q.b - l->p.b * l->q.a;
   phases[0] = (a * l->q.b - b * l->q.a) / area;
   phases[1] = (l->p.a * b - l->p.b * a) / area;
 }
 
-static void phases_at(const rc_lattice *lattice, float a, float b, float phases[2]) {
-  float s = fminf(fmaxf(a, lattice->a0), lattice->a1) / lattice->reach;
-  float t = fminf(fmaxf(b, lattice->b0), lattice->b1) / lattice->reach;
-  even_phases(lattice, a, b, phases);
+static float bend_column(float px, float spacing, int *column) {
+  float at = fminf(fmaxf(px / spacing + RC_BENDS_HALF, 0.f), (float)(RC_BENDS - 1));
+  *column = (int)fminf(at, (float)(RC_BENDS - 2));
+  return at - (float)*column;
+}
+
+void rc_lattice_phases(const rc_lattice *lattice, float a, float b, float phases[2]) {
+  int x, y;
+  float s = bend_column(a, lattice->spacing, &x), t = bend_column(b, lattice->spacing, &y);
+  const float(*above)[2] = &lattice->bends->cycles[y][x];
+  const float(*below)[2] = &lattice->bends->cycles[y + 1][x];
+  rc_lattice_even_phases(lattice, a, b, phases);
   for (int i = 0; i < 2; i++) {
-    const float *c = lattice->bend[i];
-    phases[i] += s * (c[0] + s * (c[2] + s * c[5] + t * c[6]) + t * (c[3] + t * c[7])) +
-                 t * (c[1] + t * (c[4] + t * c[8]));
+    float upper = above[0][i] + s * (above[1][i] - above[0][i]);
+    float lower = below[0][i] + s * (below[1][i] - below[0][i]);
+    phases[i] += upper + t * (lower - upper);
   }
 }
 
-/* Off by less than half a cycle, and by no more than the tolerance. */
-static float too_far(float cycles, float tolerance) {
-  float off = cycles - rc_round(cycles);
-  return off > tolerance ? off - tolerance : off < -tolerance ? off + tolerance : 0.f;
+/* Cycles from one place's phases to another's but for whole ones. */
+static void off_lattice(const float from[2], const float to[2], float off[2]) {
+  for (int i = 0; i < 2; i++) off[i] = to[i] - from[i] - rc_round(to[i] - from[i]);
 }
 
-rc_copy rc_copy_on_lattice(const rc_lattice *lattice, const rc_chart *chart, float tolerance,
-                           float x, float y, float to_x, float to_y) {
+rc_copy rc_copy_on_lattice(const rc_lattice *lattice, const rc_chart *chart, float x, float y,
+                           float to_x, float to_y) {
   rc_chart flat = rc_chart_flat(*chart);
-  float w = 1.f + chart->lx * x + chart->ly * y, here[2], there[2];
+  float w = 1.f + chart->lx * x + chart->ly * y, here[2], there[2], off[2];
   rc_copy move = rc_copy_between(&flat, x, y, to_x, to_y);
-  phases_at(lattice, x / w, y / w, here);
-  phases_at(lattice, x / w + move.a, y / w + move.b, there);
-  float p = too_far(there[0] - here[0], tolerance), q = too_far(there[1] - here[1], tolerance);
-  return rc_copy_of_move(chart, x, y, move.a - p * lattice->p.a - q * lattice->q.a,
-                         move.b - p * lattice->p.b - q * lattice->q.b);
+  rc_lattice_phases(lattice, x / w, y / w, here);
+  rc_lattice_phases(lattice, x / w + move.a, y / w + move.b, there);
+  off_lattice(here, there, off);
+  return rc_copy_of_move(chart, x, y, move.a - off[0] * lattice->p.a - off[1] * lattice->q.a,
+                         move.b - off[0] * lattice->p.b - off[1] * lattice->q.b);
 }
 
-/* The two that together are shortest, of those longer than *length, which becomes theirs. */
-static bool next_periods(const rc_copy *periods, int count, float *length, rc_lattice *lattice) {
-  float shortest = INFINITY;
-  for (int i = 0; i < count && i < STRONGEST; i += 2)
-    for (int j = 0; j < i; j += 2) {
-      rc_copy p = periods[i], q = periods[j];
-      float p_px = sqrtf(p.a * p.a + p.b * p.b), q_px = sqrtf(q.a * q.a + q.b * q.b);
-      float area = fabsf(p.a * q.b - p.b * q.a), both = p_px + q_px;
-      if (fminf(p_px, q_px) < LEAST_PERIOD_PX || area < LEAST_SINE * p_px * q_px) continue;
-      if (both > *length && both < shortest) shortest = both, lattice->p = p, lattice->q = q;
-    }
-  *length = shortest;
-  return shortest < INFINITY;
-}
-
-/* share: of the plane, in square px where w = 1. */
-static void add_pixel(survey *s, float a, float b, double share, double value) {
-  float phases[2], near[2][2 * WITHIN + 1];
-  double phasor[2][2];
-  int column = (int)rc_round(a / s->spacing), row = (int)rc_round(b / s->spacing);
-  float unit = -.5f / (SIGMA * SIGMA);
-  even_phases(s->lattice, a, b, phases);
-  for (int i = 0; i < 2; i++) turn(-phases[i], phasor[i]);
-  for (int n = -WITHIN; n <= WITHIN; n++) {
-    float across = a / s->spacing - (float)(column + n), along = b / s->spacing - (float)(row + n);
-    near[0][n + WITHIN] = rc_exp(unit * across * across);
-    near[1][n + WITHIN] = rc_exp(unit * along * along);
-  }
-  for (int j = -WITHIN; j <= WITHIN; j++)
-    for (int i = -WITHIN; i <= WITHIN; i++) {
-      int x = column + i + HALF_GRID, y = row + j + HALF_GRID;
-      if (!rc_inside(GRID, GRID, x, y)) continue;
-      double weight = share * near[0][i + WITHIN] * near[1][j + WITHIN];
-      cell *c = &s->cells[y][x];
-      c->pixels += weight, c->value += weight * value;
-      for (int n = 0; n < 2; n++)
-        for (int k = 0; k < 2; k++)
-          c->bare[n][k] += weight * phasor[n][k], c->phasor[n][k] += weight * value * phasor[n][k];
-    }
-}
-
-static void look_around(survey *s) {
-  const rc_level *level = s->level;
-  int pixels = level->width * level->height;
-  uint64_t step = (uint64_t)pixels / MOST_PIXELS + 1;
-  float edge = (HALF_GRID + WITHIN) * s->spacing;
-  for (int i = 0; i < pixels; i++) {
-    int column = i % level->width, row = i / level->width;
-    if (!level->room[i]) continue;
-    /* By chance: every n-th would have a lattice of its own. */
-    if (rc_random(PIXELS_KEY, (uint32_t)column, (uint32_t)row, 0) % step) continue;
-    float x = rc_level_x(level, column), y = rc_level_y(level, row), w = rc_level_w(level, x, y);
-    if (!(w > 1 / WIDEST_RATIO && w < WIDEST_RATIO)) continue;
-    if (fabsf(x / w) < edge && fabsf(y / w) < edge)
-      add_pixel(s, x / w, y / w, 1 / (w * w * w), rc_level_trait(level, i));
-  }
-  for (int n = 0; n < GRID * GRID; n++) {
-    cell *c = &s->cells[n / GRID][n % GRID];
-    s->fullest = fmax(s->fullest, c->pixels);
-    for (int i = 0; i < 2 && c->pixels > 0; i++)
-      for (int k = 0; k < 2; k++) c->phasor[i][k] -= c->value / c->pixels * c->bare[i][k];
-  }
-}
-
-static bool tells(const survey *s, int x, int y) {
-  return s->cells[y][x].pixels >= LEAST_FULL * s->fullest;
-}
-
-/* What two cells say of phase i: from the first to the second it gains so many cycles more than
- * even ones. Weight 0: nothing. */
-typedef struct pair {
-  double weight, cycles, terms[RC_BENDS]; /* and what the bends' terms gain */
-} pair;
-
-static pair pair_of(const survey *s, int i, int x, int y, int to_x, int to_y) {
-  pair p = {.weight = 0};
-  double there[RC_BENDS];
-  if (!rc_inside(GRID, GRID, to_x, to_y)) return p;
-  const cell *c = &s->cells[y][x], *d = &s->cells[to_y][to_x];
-  if (!tells(s, x, y) || !tells(s, to_x, to_y)) return p;
-  double re = c->phasor[i][0] * d->phasor[i][0] + c->phasor[i][1] * d->phasor[i][1];
-  double im = c->phasor[i][0] * d->phasor[i][1] - c->phasor[i][1] * d->phasor[i][0];
-  p.weight = sqrt(re * re + im * im) / (c->pixels * d->pixels);
-  p.cycles = turns_of(re, im);
-  bend_terms(s->lattice, (float)(x - HALF_GRID) * s->spacing, (float)(y - HALF_GRID) * s->spacing,
-             p.terms);
-  bend_terms(s->lattice, (float)(to_x - HALF_GRID) * s->spacing,
-             (float)(to_y - HALF_GRID) * s->spacing, there);
-  for (int n = 0; n < RC_BENDS; n++) p.terms[n] = there[n] - p.terms[n];
-  return p;
-}
-
-/* How phase i bends, more exactly than so far: cells so far apart gain less than half a cycle more
- * or less than is known. */
-static void fit(survey *s, int i, int apart) {
-  double product[RC_BENDS * RC_BENDS] = {0}, value[RC_BENDS] = {0}, most = 0;
-  for (int n = 0; n < 2 * GRID * GRID; n++) {
-    int x = n / 2 % GRID, y = n / 2 / GRID;
-    pair p = pair_of(s, i, x, y, x + apart * (n % 2), y + apart * !(n % 2));
-    double cycles = p.cycles - bent_by(s->lattice, i, p.terms);
-    cycles -= rc_round((float)cycles);
-    for (int j = 0; j < RC_BENDS; j++) {
-      value[j] += p.weight * p.terms[j] * cycles;
-      for (int k = 0; k <= j; k++) product[j * RC_BENDS + k] += p.weight * p.terms[j] * p.terms[k];
-    }
-  }
-  for (int j = 0; j < RC_BENDS; j++) most = fmax(most, product[j * RC_BENDS + j]);
-  for (int j = 0; j < RC_BENDS; j++) product[j * RC_BENDS + j] += RIDGE * most;
-  if (!(most > 0) || !rc_factor(RC_BENDS, product)) return;
-  rc_substitute(RC_BENDS, product, value);
-  for (int j = 0; j < RC_BENDS; j++) s->lattice->bend[i][j] += (float)value[j];
-}
-
-/* How far cells agree about phase i, -1 .. 1; 0 where there are too few. */
-static double agreeing(const survey *s, int i) {
-  double agreed = 0, weight = 0, phasor[2];
-  int pairs = 0;
-  for (int n = 0; n < 2 * GRID * GRID; n++) {
-    int x = n / 2 % GRID, y = n / 2 / GRID;
-    pair p = pair_of(s, i, x, y, x + APART * (n % 2), y + APART * !(n % 2));
-    turn((float)(p.cycles - bent_by(s->lattice, i, p.terms)), phasor);
-    agreed += p.weight * phasor[0], weight += p.weight, pairs += p.weight > 0;
-  }
-  return pairs < LEAST_PAIRS ? 0 : agreed / weight;
-}
-
-static void find_ends(survey *s) {
-  rc_lattice *l = s->lattice;
-  l->a0 = l->b0 = INFINITY, l->a1 = l->b1 = -INFINITY;
-  for (int y = 0; y < GRID; y++)
-    for (int x = 0; x < GRID; x++) {
-      float a = (float)(x - HALF_GRID) * s->spacing, b = (float)(y - HALF_GRID) * s->spacing;
-      if (!tells(s, x, y)) continue;
-      l->a0 = fminf(l->a0, a), l->a1 = fmaxf(l->a1, a);
-      l->b0 = fminf(l->b0, b), l->b1 = fmaxf(l->b1, b);
-    }
-}
-
-/* The amplitude of phase i's wave. */
-static double clearness(const cell *c, int i) {
-  return sqrt(c->phasor[i][0] * c->phasor[i][0] + c->phasor[i][1] * c->phasor[i][1]) / c->pixels;
-}
-
-static void mark_hole(survey *s) {
-  const rc_level *level = s->level;
-  for (int y = level->box.y0; y < level->box.y1; y++)
-    for (int x = level->box.x0; x < level->box.x1; x++) {
-      float px = rc_level_x(level, x), py = rc_level_y(level, y), w = rc_level_w(level, px, py);
-      if (!rc_level_is_target(level, x, y) || !(w > 1 / WIDEST_RATIO)) continue;
-      int column = (int)rc_round(px / w / s->spacing) + HALF_GRID;
-      int row = (int)rc_round(py / w / s->spacing) + HALF_GRID;
-      for (int j = -1; j <= 1; j++)
-        for (int i = -1; i <= 1; i++)
-          if (rc_inside(GRID, GRID, column + i, row + j))
-            s->cells[row + j][column + i].beside = true;
-    }
-}
-
-/* How clearly cells beside the hole show phase i, in units of what all do. */
-static double clear_beside(const survey *s, int i) {
-  double beside = 0, all = 0, beside_count = 0, count = 0;
-  for (int n = 0; n < GRID * GRID; n++) {
-    const cell *c = &s->cells[n / GRID][n % GRID];
-    if (!tells(s, n % GRID, n / GRID)) continue;
-    all += clearness(c, i), count++;
-    if (c->beside) beside += clearness(c, i), beside_count++;
-  }
-  return beside_count > 0 ? beside / beside_count * count / all : 0;
-}
-
-/* Of all periods that span the same lattice the shortest show most: takes from the longer one what
- * it has of the other. */
-static void reduce(rc_lattice *lattice) {
-  for (int n = 0; n < 4; n++) {
-    rc_copy *p = &lattice->p, *q = &lattice->q;
-    if (p->a * p->a + p->b * p->b > q->a * q->a + q->b * q->b) p = &lattice->q, q = &lattice->p;
-    float times = rc_round((p->a * q->a + p->b * q->b) / (p->a * p->a + p->b * p->b));
-    q->a -= times * p->a, q->b -= times * p->b;
-  }
-}
-
-/* How it bends, its periods being chosen; and how far the known texture agrees. */
-static double look_for(survey *s, rc_lattice *lattice) {
-  double least = 1, clear = 1;
-  float p_px = sqrtf(lattice->p.a * lattice->p.a + lattice->p.b * lattice->p.b);
-  float q_px = sqrtf(lattice->q.a * lattice->q.a + lattice->q.b * lattice->q.b);
-  memset(s->cells, 0, sizeof s->cells);
-  s->lattice = lattice, s->spacing = fmaxf(p_px, q_px), s->fullest = 0;
-  lattice->reach = s->spacing * HALF_GRID / 2;
-  look_around(s);
-  find_ends(s);
-  mark_hole(s);
+float rc_lattice_price(const rc_lattice *lattice, const rc_chart *chart, const float phases[2],
+                       float x, float y) {
+  float w = 1.f + chart->lx * x + chart->ly * y, there[2], off[2], sum = 0;
+  rc_lattice_phases(lattice, x / w, y / w, there);
+  off_lattice(phases, there, off);
   for (int i = 0; i < 2; i++) {
-    for (int apart = 1; apart <= APART; apart *= 2) fit(s, i, apart);
-    least = fmin(least, agreeing(s, i)), clear = fmin(clear, clear_beside(s, i));
+    float too_far = fmaxf(fabsf(off[i]) - TOLERANCE, 0.f);
+    sum += too_far * too_far;
   }
-  return clear < LEAST_CLEAR ? 0 : least;
-}
-
-recede_status rc_lattice_find(rc_context *context, const rc_level *level, const rc_copy *periods,
-                              int period_count, rc_lattice *lattice) {
-  survey *s;
-  float length = 0;
-  double most = LEAST_AGREEING;
-  *lattice = (rc_lattice){.reach = 1};
-  rc_block *mark = rc_mark(context);
-  RC_TRY(RC_NEW(context, 1, &s));
-  s->level = level;
-  for (int n = 0; n < MOST_LATTICES; n++) {
-    rc_lattice tried = {.reach = 1};
-    if (!next_periods(periods, period_count, &length, &tried)) break;
-    reduce(&tried);
-    double agreed = look_for(s, &tried);
-    if (agreed > most) most = agreed, *lattice = tried;
-    RC_TRY(rc_poll(context));
-  }
-  rc_release(context, mark);
-  return rc_poll(context);
+  return PRICE * sum;
 }

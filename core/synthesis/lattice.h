@@ -4,17 +4,20 @@
 #ifndef RECEDE_SYNTHESIS_LATTICE_H
 #define RECEDE_SYNTHESIS_LATTICE_H
 
-#include "synthesis/level.h"
+#include "synthesis/copy.h"
 
-/* Terms of a cubic without its constant. */
-#define RC_BENDS 9
+/* How it bends is told at so many points, one period apart, to each side of the hole's middle. */
+#define RC_BENDS_HALF 24
+#define RC_BENDS (2 * RC_BENDS_HALF + 1)
+
+typedef struct rc_bends {
+  float cycles[RC_BENDS][RC_BENDS][2]; /* by which the phases differ from even ones, row by row */
+} rc_bends;
 
 typedef struct rc_lattice {
-  rc_copy p, q;         /* two periods, px where w = 1; 0, 0: there is no lattice */
-  float reach;          /* in the terms of the bends the unit of length, px where w = 1 */
-  float a0, b0, a1, b1; /* the part of the plane that tells of bends, px where w = 1; beyond it they
-                           are as at its end */
-  float bend[2][RC_BENDS]; /* cycles by which the phases along p and q differ from even ones */
+  rc_copy p, q;          /* two periods, px where w = 1; 0, 0: there is no lattice */
+  float spacing;         /* of the points that tell how it bends, px where w = 1 */
+  const rc_bends *bends; /* beyond them it bends as at their end */
 } rc_lattice;
 
 static inline bool rc_has_lattice(const rc_lattice *lattice) {
@@ -25,19 +28,21 @@ static inline bool rc_has_lattice(const rc_lattice *lattice) {
 static inline rc_lattice rc_lattice_finer(rc_lattice lattice, float times) {
   lattice.p.a *= times, lattice.p.b *= times;
   lattice.q.a *= times, lattice.q.b *= times;
-  lattice.reach *= times;
-  lattice.a0 *= times, lattice.b0 *= times, lattice.a1 *= times, lattice.b1 *= times;
+  lattice.spacing *= times;
   return lattice;
 }
 
-/* From the periods, as rc_find_periods tells them, and the known pixels of this, the coarsest
- * level. */
-recede_status rc_lattice_find(rc_context *context, const rc_level *level, const rc_copy *periods,
-                              int period_count, rc_lattice *lattice);
+/* Periods from the origin to (a, b), px where w = 1: of an even lattice, and as it bends. */
+void rc_lattice_even_phases(const rc_lattice *lattice, float a, float b, float phases[2]);
+void rc_lattice_phases(const rc_lattice *lattice, float a, float b, float phases[2]);
 
-/* The copy that takes target (x, y) from (to_x, to_y) or, where that is elsewhere in the lattice by
- * more than the tolerance, in cycles, from the nearest point that is not. */
-rc_copy rc_copy_on_lattice(const rc_lattice *lattice, const rc_chart *chart, float tolerance,
-                           float x, float y, float to_x, float to_y);
+/* The copy that takes target (x, y) from where in the lattice it is itself, near (to_x, to_y). */
+rc_copy rc_copy_on_lattice(const rc_lattice *lattice, const rc_chart *chart, float x, float y,
+                           float to_x, float to_y);
+
+/* What a copy costs that is off by more than laying by hand, in units of the texture's variance.
+ * phases: the target's; (x, y): the source, relative to the chart's origin. */
+float rc_lattice_price(const rc_lattice *lattice, const rc_chart *chart, const float phases[2],
+                       float x, float y);
 
 #endif

@@ -7,6 +7,7 @@
 #include "kernels/kernels.h"
 #include "synthesis/conditions.h"
 #include "synthesis/copy.h"
+#include "synthesis/lattice.h"
 #include "synthesis/sides.h"
 #include "synthesis/traits.h"
 
@@ -49,7 +50,8 @@ typedef struct rc_level {
   rc_ranges ranges;
   rc_sides sides;
   rc_conditions conditions;
-  float variance; /* of sources, byte^2, summed over the components */
+  rc_lattice lattice; /* which copies keep to, if there is one */
+  float variance;     /* of sources, byte^2, summed over the components */
   /* Sources sorted by side and w: indices of pixels, bin b of side s at order[first[s][b]] ..
    * order[first[s][b + 1]]. NULL where nobody asks: the finer levels look nearby, and take the
    * coarsest one's ranges over. */

@@ -92,7 +92,7 @@ static void try_neighbours(const scan *s, pixel_state *state) {
 }
 
 static rc_copy copy_from(const scan *s, const pixel_state *state, float x, float y) {
-  return rc_search_copy(s->search, &s->level->chart, state->query.x, state->query.y, x, y);
+  return rc_search_copy(s->search, s->level, state->query.x, state->query.y, x, y);
 }
 
 static void try_nearby(const scan *s, pixel_state *state) {
@@ -128,7 +128,7 @@ static void try_anywhere(const scan *s, pixel_state *state) {
 static rc_copy shifted_by_period(const scan *s, const pixel_state *state, rc_copy from,
                                  rc_copy period) {
   const rc_level *level = s->level;
-  if (!level->chart.raised && !rc_has_lattice(&s->search->lattice))
+  if (!level->chart.raised && !rc_has_lattice(&level->lattice))
     return (rc_copy){from.a + period.a, from.b + period.b, 0.f};
   rc_chart flat = rc_chart_flat(level->chart);
   rc_place place = rc_query_place(level, &state->query, from);

@@ -3,7 +3,6 @@
 #define RECEDE_SYNTHESIS_SEARCH_H
 
 #include "synthesis/evaluate.h"
-#include "synthesis/lattice.h"
 #include "synthesis/rails.h"
 
 typedef struct rc_search {
@@ -17,10 +16,8 @@ typedef struct rc_search {
   int anywhere;           /* random candidates from all sources of the right scale */
   const rc_copy *periods; /* candidates to add to the pixel's copy (flat) */
   int period_count, period_tries;
-  rc_lattice lattice;      /* of this level: candidates by chance keep to it if there is one */
-  float lattice_tolerance; /* cycles */
-  rc_rails rails;          /* or to these if they run */
-  float rail_tolerance;    /* px, where w = 1 */
+  rc_rails rails;       /* candidates by chance keep to these if they run */
+  float rail_tolerance; /* px, where w = 1 */
 } rc_search;
 
 /* One pass over the level's field. old is scratch of box_w * box_h. */
@@ -28,10 +25,11 @@ recede_status rc_search_pass(rc_context *context, rc_level *level, const rc_sear
                              rc_copy *old);
 
 /* The copy that takes target (x, y) from (to_x, to_y) or the nearest point that the search may. */
-static inline rc_copy rc_search_copy(const rc_search *search, const rc_chart *chart, float x,
+static inline rc_copy rc_search_copy(const rc_search *search, const rc_level *level, float x,
                                      float y, float to_x, float to_y) {
-  if (rc_has_lattice(&search->lattice))
-    return rc_copy_on_lattice(&search->lattice, chart, search->lattice_tolerance, x, y, to_x, to_y);
+  const rc_chart *chart = &level->chart;
+  if (rc_has_lattice(&level->lattice))
+    return rc_copy_on_lattice(&level->lattice, chart, x, y, to_x, to_y);
   if (rc_runs(&search->rails))
     return rc_copy_on_rails(&search->rails, chart, search->rail_tolerance, x, y, to_x, to_y);
   return rc_copy_between(chart, x, y, to_x, to_y);

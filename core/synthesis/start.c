@@ -53,7 +53,7 @@ static void consider_chance(const ring *r, choice *c, int x, int y) {
     uint64_t bits = rc_random(r->search->key, (uint32_t)x, (uint32_t)y, (uint32_t)n);
     rc_level_random_source(level, sources, bits, &sx, &sy);
     consider(r, c,
-             rc_search_copy(r->search, &level->chart, c->query.x, c->query.y, rc_level_x(level, sx),
+             rc_search_copy(r->search, level, c->query.x, c->query.y, rc_level_x(level, sx),
                             rc_level_y(level, sy)));
   }
 }
@@ -69,13 +69,13 @@ static void refine(const ring *r, choice *c, int x, int y) {
       int dy = (int)rc_below((uint32_t)(bits >> 32), 2u * (uint32_t)radius + 1) - radius;
       if (!(rc_level_w(level, place.x + (float)dx, place.y + (float)dy) > 0.f)) continue;
       consider(r, c,
-               rc_search_copy(r->search, &level->chart, c->query.x, c->query.y, place.x + (float)dx,
+               rc_search_copy(r->search, level, c->query.x, c->query.y, place.x + (float)dx,
                               place.y + (float)dy));
     }
 }
 
 static void consider_periods(const ring *r, choice *c) {
-  if (r->level->chart.raised || rc_has_lattice(&r->search->lattice)) return;
+  if (r->level->chart.raised) return;
   for (int n = 0; n < r->search->period_count; n++) consider(r, c, r->search->periods[n]);
 }
 

@@ -170,10 +170,54 @@ static void stripes_go_on(void) {
   task_clear(&t);
 }
 
+#define TILE_PX 26.
+
+/* Tiles of shades of their own, laid in arcs: in no direction does a row go on straight, and no
+ * copy of more than two tiles fits elsewhere. *joint: how deep in one, 0 .. 1. */
+static double tile_at(int x, int y, double *joint) {
+  double u = (x - 256) / TILE_PX, v = (y - 256) / (.8 * TILE_PX);
+  double across = u + .8 * v * v / 64, along = v + .64 * u * u / 64;
+  double du = .5 - fabs(across - floor(across) - .5), dv = .5 - fabs(along - floor(along) - .5);
+  *joint = exp(-pow(fmin(du / .07, dv / .085), 2));
+  return .55 + .12 * noise_at((int)floor(across), (int)floor(along), 51) - .4 * *joint;
+}
+
+/* The part of the hole's joints that is dark. */
+static double joints_kept(const char *settings) {
+  const area middle = {186, 201, 326, 311};
+  double kept = 0, all = 0, joint;
+  for (int seed = 0; seed < 3; seed++) {
+    picture p = picture_new(512, 512, 1, RECEDE_U8);
+    for (int y = 0; y < 512; y++)
+      for (int x = 0; x < 512; x++)
+        picture_set(&p, x, y, 0, (float)(tile_at(x, y, &joint) + .05 * noise_at(x, y, 52)));
+    task t = task_new(p, settings);
+    task_set(&t, "orientation=frontal");
+    t.params.seed = seed;
+    task_hole(&t, middle);
+    task_succeeds(&t);
+    for (int y = middle.y0; y < middle.y1; y++)
+      for (int x = middle.x0; x < middle.x1; x++) {
+        tile_at(x, y, &joint);
+        if (joint > .6) all++, kept += picture_get(&t.result, x, y, 0) < .4f;
+      }
+    task_clear(&t);
+  }
+  g_test_message("%s: %.3f of the joints", settings, kept / all);
+  return kept / all;
+}
+
+static void arcs_go_on(void) {
+  double with = joints_kept(""), without = joints_kept("engine-lattice=0");
+  g_assert_cmpfloat(with, >, .68);
+  g_assert_cmpfloat(with, >, without + .1);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/texture/parquet", parquet_goes_on);
   g_test_add_func("/texture/stones", stones_stay_whole);
   g_test_add_func("/texture/stripes", stripes_go_on);
+  g_test_add_func("/texture/arcs", arcs_go_on);
   return g_test_run();
 }
