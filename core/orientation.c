@@ -4,11 +4,16 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "image/view.h"
 #include "plane/estimate.h"
 
 /* Orientation is read from a copy of the picture no longer than this: the estimate's accuracy does
  * not gain from more, its time does. */
 #define ESTIMATE_LONGEST_PX 1000
+
+/* What stands on a floor reaches above the floor's horizon: so much of a hole below it is its foot,
+ * and tells the plane's side. A hole in a ceiling hardly reaches that far down. */
+#define LEAST_FOOT .1
 
 static int longer(int width, int height) { return width > height ? width : height; }
 
@@ -45,11 +50,33 @@ static recede_status explain(rc_context *context, recede_status status, const ch
                        what);
 }
 
+/* (on) becomes the middle of what the mask has below a horizon h, if that is its foot. */
+static recede_status move_to_foot(rc_context *context, const recede_view *mask, const double h[4],
+                                  double on[2]) {
+  double slope = (h[3] - h[1]) / (h[2] - h[0]), all = 0, below = 0, sum_x = 0, sum_y = 0;
+  float *row;
+  if (!(fabs(slope) <= 1)) return RECEDE_OK; /* steeper: neither side is below */
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, mask->width, &row));
+  for (int y = 0; y < mask->height; y++) {
+    rc_view_read(mask, 0, y, mask->width, row);
+    for (int x = 0; x < mask->width; x++) {
+      if (!(row[x] > 0)) continue;
+      all++;
+      if (y > h[1] + slope * (x - h[0])) below++, sum_x += x, sum_y += y;
+    }
+  }
+  rc_release(context, mark);
+  if (below > LEAST_FOOT * all) on[0] = sum_x / below, on[1] = sum_y / below;
+  return RECEDE_OK;
+}
+
 static recede_status find_plane(rc_context *context, const recede_params *p, const rc_views *views,
                                 int width, int height, const double on[2],
                                 recede_orientation *orientation) {
   recede_plane *plane = &orientation->plane;
   const double *h = p->horizon;
+  double side[2] = {on[0], on[1]};
   orientation->confidence = 1;
   switch (p->orientation) {
     case RECEDE_ORIENTATION_ANGLES:
@@ -57,9 +84,10 @@ static recede_status find_plane(rc_context *context, const recede_params *p, con
     case RECEDE_ORIENTATION_FRONTAL:
       return recede_plane_from_angles(width, height, 0, 0, p->fov_deg, plane);
     case RECEDE_ORIENTATION_HORIZON:
+      if (views->mask) RC_TRY(move_to_foot(context, views->mask, h, side));
       return explain(context,
                      recede_plane_from_horizon(width, height, p->fov_deg, h[0], h[1], h[2], h[3],
-                                               on[0], on[1], plane),
+                                               side[0], side[1], plane),
                      "horizon");
     case RECEDE_ORIENTATION_QUAD:
       return explain(context, recede_plane_from_quad(width, height, p->fov_deg, p->quad, 1, plane),

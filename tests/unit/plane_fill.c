@@ -165,6 +165,23 @@ static void horizon_crosses_the_hole(void) {
   task_clear(&t);
 }
 
+/* Of who stands on a floor only the feet are below its horizon: they tell the plane's side. A
+ * ceiling's lamp that hardly reaches below it does not. */
+static void feet_tell_the_side(void) {
+  static const struct {
+    area hole;
+    double tilt_deg;
+  } holes[] = {{{90, 5, 110, 85}, 0}, {{90, 5, 110, 72}, 0}, {{90, 5, 110, 66}, 180}};
+  for (guint i = 0; i < G_N_ELEMENTS(holes); i++) {
+    task t = task_new(picture_of_plane(WIDTH, HEIGHT, 3, RECEDE_FLOAT, grains, 5, 30, 0),
+                      "quality=draft orientation=horizon horizon=0,60,200,60");
+    task_hole(&t, holes[i].hole);
+    task_succeeds(&t);
+    g_assert_cmpfloat(fabs(t.report.orientation.tilt_deg), ==, holes[i].tilt_deg);
+    task_clear(&t);
+  }
+}
+
 static void all_beyond_the_horizon(void) {
   task t = grain_task(78, "");
   task_hole(&t, (area){70, 2, 130, 24});
@@ -269,6 +286,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/plane/same-bytes", same_for_threads_and_kernels);
   g_test_add_func("/plane/held", held_bytes);
   g_test_add_func("/plane/lattice", lattice_goes_on);
+  g_test_add_func("/plane/feet", feet_tell_the_side);
   g_test_add_func("/plane/places", filled_wherever_the_hole_is);
   g_test_add_func("/plane/horizon", horizon_crosses_the_hole);
   g_test_add_func("/plane/beyond", all_beyond_the_horizon);
