@@ -276,7 +276,8 @@ static recede_status synthesize_in_plane(recede_job *job, const recede_plane *pl
   RC_TRY(rc_problem_of_synthesis(&job->context, &views, plane, &problem));
   RC_TRY(run_method(job, &problem, &filled));
   RC_TRY(rc_stage(&job->context, "write", .97, 1));
-  rc_write_synthesis(&filled, &problem.flags, result);
+  float least = rc_least_known(&job->image, &problem, problem.exemplar_x, problem.exemplar_y);
+  rc_write_synthesis(&filled, &problem.flags, least, result);
   rc_write_exemplar(&job->image, &problem, result);
   return RECEDE_OK;
 }
@@ -292,7 +293,7 @@ static recede_status synthesize_as_paper(recede_job *job, const recede_plane *pl
   RC_TRY(rc_synthesize_paper(context, &exemplar, &flags, plane, &job->params, &made));
   RC_TRY(rc_stage(context, "write", .97, 1));
   context->report.filled_pixels = (uint64_t)made.width * (uint64_t)made.height;
-  rc_write_synthesis(&made, NULL, result);
+  rc_write_synthesis(&made, NULL, -INFINITY, result);
   return RECEDE_OK;
 }
 

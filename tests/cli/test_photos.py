@@ -57,5 +57,17 @@ def test_a_roof_keeps_its_rows(folder):
     check(means[1] > .78 and means[1] > means[0] + .04, kept)
 
 
+def test_light_is_not_negative(folder):
+    """A roof in linear light, its hole's surroundings bright and black: what is joined gets no
+    darker than black."""
+    light = (read(IMAGES / "roofs.jpg").astype(np.float32) / 255) ** 2.2
+    image = write(folder / "light.tif", light)
+    recede("fill", image, "--mask", IMAGES / "roofs-mask.png", "-o", folder / "out.tif", "--frontal",
+           "-q")
+    out = cv2.imread(str(folder / "out.tif"), cv2.IMREAD_UNCHANGED)
+    check(out.dtype == np.float32 and out.min() >= 0, out.dtype, out.min())
+    check((out != light).any(), "nothing was filled")
+
+
 if __name__ == "__main__":
     sys.exit(harness.main(globals()))
