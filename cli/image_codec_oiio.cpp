@@ -222,7 +222,6 @@ ImageSpec spec_for(const recede_view *view, const std::string &format, const ima
   if (format == "openexr" && !spec.find_attribute("DateTime")) spec.attribute("DateTime", 1);
   if (format == "tiff") spec.attribute("DateTime", "0000:00:00 00:00:00");
   if (format == "jpeg") take_jpeg_settings(spec, like ? &like->spec : nullptr);
-  if (format == "webp") spec.attribute("compression", "lossless");
   // A third of the usual level 6's time, and 8 % more bytes: 12 MP in .7 s instead of 2.2 s.
   if (format == "png") spec.attribute("png:compressionLevel", 4);
   return spec;

@@ -73,7 +73,7 @@ static image_status check_before_decoder(const image_file *file, image_message *
   const unsigned char *data = file->bytes.data;
   if (!file->format)
     return fail(message, IMAGE_MALFORMED, "it is no picture of a kind we read (%s)",
-                image_format_suffixes());
+                image_format_read());
   if (strcmp(file->format->codec, "jpeg") != 0) return IMAGE_OK;
   if (image_format_jpeg_channels(data, file->bytes.size) == 4)
     return fail(message, IMAGE_UNSUPPORTED, "its colours are CMYK; convert it to RGB first");
@@ -235,8 +235,14 @@ bool image_file_can_write(const char *path, const image_file *like, recede_type 
   recede_type written;
   message->text[0] = '\0';
   if (!format) {
-    fail(message, IMAGE_OUTPUT, "its suffix names no format we write (%s)",
-         image_format_suffixes());
+    fail(message, IMAGE_OUTPUT, "its suffix names no format we write (%s)", image_format_written());
+    return false;
+  }
+  if (!format->types) {
+    fail(message, IMAGE_OUTPUT,
+         "%s is read, not written: its encoder here would change pixels outside the mask; use .png "
+         "or .tif",
+         format->name);
     return false;
   }
   if (!written_type(format, type, &written)) {

@@ -13,13 +13,14 @@
 #define RGBA (1u << 4)
 #define ALL (GRAY | GRAY_ALPHA | RGB | RGBA)
 
-/* What the writers of OpenImageIO 2.4 were seen to keep bit for bit (JPEG, which cannot, apart). */
+/* What the writers of OpenImageIO 2.4 were seen to keep bit for bit (JPEG, which cannot, apart).
+ * WebP: until 3.0 its writer halves the colours even when it is asked to lose nothing. */
 static const image_format formats[] = {
     {"PNG", "png", {"png"}, U8 | U16, ALL},
     {"JPEG", "jpeg", {"jpg", "jpeg", "jpe"}, U8, GRAY | RGB},
     {"TIFF", "tiff", {"tif", "tiff"}, U8 | U16 | FLOAT, ALL},
     {"OpenEXR", "openexr", {"exr"}, HALF | FLOAT, ALL},
-    {"WebP", "webp", {"webp"}, U8, RGB | RGBA},
+    {"WebP", "webp", {"webp"}, 0, 0},
     {"BMP", "bmp", {"bmp"}, U8, GRAY | RGB | RGBA},
     {"Radiance HDR", "hdr", {"hdr"}, FLOAT, RGB},
     {"PNM", "pnm", {"ppm", "pgm", "pnm"}, U8, GRAY | RGB},
@@ -28,9 +29,11 @@ static const image_format formats[] = {
 #define FORMATS (sizeof formats / sizeof *formats)
 enum { PNG, JPEG, TIFF, EXR, WEBP, BMP, HDR, PNM, TARGA };
 
-const char *image_format_suffixes(void) {
+const char *image_format_read(void) {
   return ".png, .jpg, .tif, .exr, .webp, .bmp, .hdr, .ppm, .tga";
 }
+
+const char *image_format_written(void) { return ".png, .jpg, .tif, .exr, .bmp, .hdr, .ppm, .tga"; }
 
 const image_format *image_format_of_name(const char *path) {
   const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');

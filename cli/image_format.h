@@ -12,7 +12,7 @@ typedef struct image_format {
   const char *name;        /* as people write it */
   const char *codec;       /* as OpenImageIO does */
   const char *suffixes[5]; /* lower case; NULL ends */
-  unsigned types;          /* bit 1 << recede_type: written without loss of depth */
+  unsigned types;          /* bit 1 << recede_type: written without loss; 0: only read */
   unsigned channels;       /* bit 1 << channels */
 } image_format;
 
@@ -22,8 +22,9 @@ const image_format *image_format_of_bytes(const unsigned char *bytes, size_t siz
                                           const char *path);
 /* By the suffix of the name, in either case. NULL: none of ours. */
 const image_format *image_format_of_name(const char *path);
-/* ".png, .tif, ...": what may be given as a suffix. */
-const char *image_format_suffixes(void);
+/* ".png, .tif, ...": what may be given as a suffix of an input, of an output. */
+const char *image_format_read(void);
+const char *image_format_written(void);
 
 bool image_format_holds(const image_format *format, recede_type type);
 

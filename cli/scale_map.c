@@ -22,12 +22,19 @@ static command_exit no_memory(void) {
   return EXIT_LIMIT;
 }
 
+/* Whether the output is the values themselves, not a picture of them. HDR's three channels share an
+ * exponent: it is for colours. */
+static bool holds_values(const char *output) {
+  const image_format *format = image_format_of_name(output);
+  return format && image_format_holds(format, RECEDE_FLOAT) && strcmp(format->codec, "hdr") != 0;
+}
+
 static command_exit check_format(const scale_map *this) {
-  const image_format *format = image_format_of_name(this->given->output);
-  if (format) return EXIT_DONE;
   image_message message;
-  image_file_can_write(this->given->output, NULL, RECEDE_U8, &message);
-  return command_refuse_image(this->given->output, IMAGE_OUTPUT, &message);
+  const char *output = this->given->output;
+  recede_type type = holds_values(output) ? RECEDE_FLOAT : RECEDE_U8;
+  if (image_file_can_write(output, NULL, type, &message)) return EXIT_DONE;
+  return command_refuse_image(output, IMAGE_OUTPUT, &message);
 }
 
 /* The pixels are only needed where the orientation is read from them. */
@@ -151,9 +158,7 @@ static void paint(const scale_map *this, recede_view *picture) {
 }
 
 static command_exit write_map(scale_map *this) {
-  const image_format *format = image_format_of_name(this->given->output);
-  bool values = image_format_holds(format, RECEDE_FLOAT) && strcmp(format->codec, "hdr") != 0;
-  if (values) return command_write(this->given, &this->map, NULL, false);
+  if (holds_values(this->given->output)) return command_write(this->given, &this->map, NULL, false);
   recede_view picture = pixels_new(this->map.width, this->map.height, 3, RECEDE_U8);
   if (!picture.data) return no_memory();
   paint(this, &picture);

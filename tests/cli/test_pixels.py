@@ -269,8 +269,17 @@ def test_what_the_output_cannot_hold(folder):
     check(b"reduced to 8" in fill("u16", "jpg", 0))
     fill("rgba", "jpg", 0)
     check(read(folder / "out.jpg").shape == (48, 64, 3))
+    check(b"use .png" in fill("u8", "webp", 4))
     fill("u8", "xyz", 4)
     fill("u8", "", 4)
+
+
+def test_webp_is_read(folder):
+    image = folder / "in.webp"
+    check(harness.cv2.imwrite(str(image), texture(), [harness.cv2.IMWRITE_WEBP_QUALITY, 101]))
+    recede("fill", image, "--mask", write(folder / "mask.png", hole()), "--frontal", "-q", "-o",
+           folder / "out.png")
+    check(same_bits(outside(read(image), hole()), outside(read(folder / "out.png"), hole())))
 
 
 def test_the_suffix_of_an_input_may_lie(folder):
