@@ -193,11 +193,29 @@ static command_exit check_output(const char *path, const options *given) {
   return EXIT_OUTPUT;
 }
 
+/* The report must not replace a picture, not even with --force. */
+static command_exit check_json(const options *given) {
+  const struct {
+    const char *path, *what;
+  } pictures[] = {{given->output, "-o"},
+                  {given->input, "the picture"},
+                  {given->mask, "--mask"},
+                  {given->source, "--source"}};
+  for (size_t i = 0; i < sizeof pictures / sizeof *pictures; i++)
+    if (pictures[i].path && safe_file_same(given->json, pictures[i].path)) {
+      char text[100];
+      snprintf(text, sizeof text, "--json names the same file as %s; give it another name",
+               pictures[i].what);
+      command_complain(given->json, text);
+      return EXIT_USAGE;
+    }
+  return check_output(given->json, given);
+}
+
 command_exit command_check_outputs(const options *given) {
   command_exit code = EXIT_DONE;
-  if (given->output) code = check_output(given->output, given);
-  if (code == EXIT_DONE && given->json && strcmp(given->json, "-") != 0)
-    code = check_output(given->json, given);
+  if (given->json && strcmp(given->json, "-") != 0) code = check_json(given);
+  if (code == EXIT_DONE && given->output) code = check_output(given->output, given);
   return code;
 }
 

@@ -140,6 +140,21 @@ def test_report_to_a_file(folder):
     fill(folder, "--frontal", "--json", to, "--force", out="two.png")
 
 
+def test_the_report_replaces_no_picture(folder):
+    image, mask = pair(folder)
+    source = write(folder / "source.png", np.full((48, 64), 255, np.uint8))
+    (folder / "link.png").symlink_to("in.png")
+    os.link(mask, folder / "second-name.png")
+    before = {path: path.read_bytes() for path in folder.iterdir()}
+    for name in ("out.png", "in.png", "mask.png", "source.png", "./out.png", "link.png",
+                 "second-name.png", f"../{folder.name}/out.png", f"../{folder.name}/in.png"):
+        done = recede("fill", image, "--mask", mask, "--source", source, "-o", folder / "out.png",
+                      "--frontal", "--force", "--json", f"{folder}/{name}", code=2)
+        check(b"--json names the same file" in done.stderr, name, done.stderr)
+    recede("orient", image, "--slant", "9", "--json", image, "--force", code=2)
+    check({path: path.read_bytes() for path in folder.iterdir()} == before, "a file changed")
+
+
 def test_seed_holds_the_hash(folder):
     image, mask = pair(folder)
 
