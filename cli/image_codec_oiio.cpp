@@ -141,6 +141,8 @@ image_info describe(const ImageSpec &spec, const std::string &format) {
   info.dpi_y = dpi_of(spec, "YResolution");
   // Targa's reader gives the rows as seen, and the tag besides.
   info.orientation = format == "targa" ? 1 : spec.get_int_attribute("Orientation", 1);
+  info.turn_given = spec.find_attribute("Orientation") != nullptr;
+  info.profile = spec.find_attribute("ICCProfile") != nullptr;
   if (info.orientation < 1 || info.orientation > 8) info.orientation = 1;
   info.indexed = spec.get_int_attribute("tiff:PhotometricInterpretation", 2) == 3;
   // PNG, Targa and the like store colours plain; EXR always multiplies; TIFF's tag says which.
@@ -193,7 +195,7 @@ void take_jpeg_settings(ImageSpec &spec, const ImageSpec *like) {
 }
 
 ImageSpec spec_for(const recede_view *view, const std::string &format, const image_decoder *like,
-                   bool premultiplied, bool keep) {
+                   bool premultiplied, int orientation, bool keep) {
   ImageSpec spec(view->width, view->height, view->channels, format_of(view->type));
   std::string compression;
   if (view->channels < 3) spec.channelnames[0] = "Y";
@@ -209,9 +211,8 @@ ImageSpec spec_for(const recede_view *view, const std::string &format, const ima
   if (like && !(keep && format == "openexr" && like->format == format))
     take_resolution(spec, like->spec);
   // JPEG and PNG get it within Exif.
-  if (like && keep && like->spec.find_attribute("Orientation"))
-    if (format == "tiff" || format == "openexr")
-      spec.attribute("Orientation", like->spec.get_int_attribute("Orientation", 1));
+  if (orientation != 1 && (format == "tiff" || format == "openexr"))
+    spec.attribute("Orientation", orientation);
   if (like && format != "openexr") take_profile(spec, like->spec); // EXR has no place for it
   // What this says is true already: no value is changed by the writers.
   if (!premultiplied) spec.attribute("oiio:UnassociatedAlpha", 1);
@@ -290,6 +291,14 @@ extern "C" image_status image_decoder_read(image_decoder *decoder, void *data,
   });
 }
 
+extern "C" image_status image_decoder_set_profile(image_decoder *decoder, const void *bytes,
+                                                  size_t size, image_message *message) {
+  return guarded(message, [&] {
+    decoder->spec.attribute("ICCProfile", TypeDesc(TypeDesc::UINT8, int(size)), bytes);
+    return IMAGE_OK;
+  });
+}
+
 extern "C" void image_decoder_free(image_decoder **decoder) {
   image_message ignored;
   guarded(&ignored, [&] {
@@ -306,8 +315,8 @@ extern "C" void image_bytes_free(image_bytes *bytes) {
 }
 
 extern "C" image_status image_encode(const recede_view *view, const char *format,
-                                     const image_decoder *like, bool premultiplied, bool keep,
-                                     image_bytes *bytes, image_message *message) {
+                                     const image_decoder *like, bool premultiplied, int orientation,
+                                     bool keep, image_bytes *bytes, image_message *message) {
   return guarded(message, [&] {
     auto output = ImageOutput::create(format);
     if (!output)
@@ -315,7 +324,7 @@ extern "C" image_status image_encode(const recede_view *view, const char *format
     Filesystem::IOVecOutput memory;
     if (!output->set_ioproxy(&memory))
       return fail(message, IMAGE_OUTPUT, "this format cannot be written from memory");
-    ImageSpec spec = spec_for(view, format, like, premultiplied, keep);
+    ImageSpec spec = spec_for(view, format, like, premultiplied, orientation, keep);
     if (!output->open(std::string("memory.") + format, spec))
       return fail(message, IMAGE_OUTPUT, error_of(output.get(), "the encoder cannot start"));
     bool good = output->write_image(format_of(view->type), view->data, AutoStride,

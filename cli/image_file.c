@@ -112,8 +112,8 @@ image_status image_file_open(const char *path, uint64_t limit, image_file *file,
   if (status != IMAGE_OK) return status;
   image_format_png_header(file->bytes.data, file->bytes.size, &file->info.stored_bits,
                           &file->info.indexed);
-  if (strcmp(file->format->codec, "tiff") == 0)
-    file->info.premultiplied = metadata_tiff_is_premultiplied(file->bytes.data, file->bytes.size);
+  status = metadata_read(file, message);
+  if (status != IMAGE_OK) return status;
   status = check_size(file, limit, message);
   bool swap = pixels_turn_swaps(file->info.orientation);
   file->view = (recede_view){NULL,
@@ -151,6 +151,7 @@ image_status image_file_read(image_file *file, image_message *message) {
 }
 
 void image_file_close(image_file *file) {
+  metadata_free(file);
   image_decoder_free(&file->decoder);
   image_bytes_free(&file->bytes);
   free(file->view.data);
@@ -315,8 +316,8 @@ image_status image_file_encode(const char *path, const recede_view *seen, const 
   if (status == IMAGE_OK && !premultiplied && strcmp(format->codec, "openexr") == 0)
     status = premultiply(&stored, seen, message);
   if (status == IMAGE_OK)
-    status = image_encode(&stored, format->codec, like ? like->decoder : NULL, premultiplied, keep,
-                          bytes, message);
+    status = image_encode(&stored, format->codec, like ? like->decoder : NULL, premultiplied,
+                          orientation, keep, bytes, message);
   if (status == IMAGE_OK) status = metadata_carry(like, format, keep, bytes, message);
   if (stored.data != seen->data) free(stored.data);
   return status;

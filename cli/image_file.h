@@ -16,8 +16,9 @@ typedef struct image_file {
   const image_format *format;
   image_bytes bytes; /* the file as it is */
   image_decoder *decoder;
-  image_info info;  /* as stored */
-  recede_view view; /* as seen; data NULL before image_file_read() */
+  struct metadata_parts *metadata; /* what it says beside the pixels: metadata.h */
+  image_info info;                 /* as stored */
+  recede_view view;                /* as seen; data NULL before image_file_read() */
 } image_file;
 
 /* Reads the file's bytes and header. limit_bytes: of the decoded pixels. On any status but IMAGE_OK
