@@ -230,8 +230,8 @@ static int written_channels(const image_format *format, int channels) {
   return channels % 2 == 0 && (format->channels & (1u << 4)) ? 4 : 3;
 }
 
-bool image_file_can_write(const char *path, const image_file *like, recede_type type,
-                          image_message *message) {
+bool image_file_can_write(const char *path, const image_file *like, int width, int height,
+                          recede_type type, image_message *message) {
   const image_format *format = image_format_of_name(path);
   recede_type written;
   message->text[0] = '\0';
@@ -249,6 +249,11 @@ bool image_file_can_write(const char *path, const image_file *like, recede_type 
   if (!written_type(format, type, &written)) {
     fail(message, IMAGE_OUTPUT, "%s cannot hold %s samples; use %s", format->name, type_name(type),
          is_float(type) ? ".exr or .tif" : ".png or .tif");
+    return false;
+  }
+  if (format->longest && (width > format->longest || height > format->longest)) {
+    fail(message, IMAGE_OUTPUT, "%s holds sides of up to %d px, the result has %d x %d; use .tif",
+         format->name, format->longest, width, height);
     return false;
   }
   if (written == RECEDE_U8 && type == RECEDE_U16)

@@ -35,10 +35,11 @@ void image_file_close(image_file *file);
 image_status image_file_read_mask(const char *path, const image_file *picture, uint64_t limit_bytes,
                                   recede_view *mask, bool *ambiguous, image_message *message);
 
-/* What the output's format would do to this picture. false: it cannot hold it, message says what to
+/* What the output's format would do to a picture of this size. like: what it is made from; NULL:
+ * none. false: it cannot hold it, message says what to
  * use; else message is "" or says what will be reduced. */
-bool image_file_can_write(const char *path, const image_file *like, recede_type type,
-                          image_message *message);
+bool image_file_can_write(const char *path, const image_file *like, int width, int height,
+                          recede_type type, image_message *message);
 
 /* Encodes a picture as seen. like: where metadata, orientation, compression come from; NULL: none.
  * keep: it is the same picture, so Exif, XMP, IPTC and the turn of the stored rows stay; else only

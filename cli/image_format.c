@@ -13,18 +13,19 @@
 #define RGBA (1u << 4)
 #define ALL (GRAY | GRAY_ALPHA | RGB | RGBA)
 
-/* What the writers of OpenImageIO 2.4 were seen to keep bit for bit (JPEG, which cannot, apart).
+/* What the writers of OpenImageIO 2.4 were seen to keep bit for bit (JPEG, which cannot, apart),
+ * and the longest sides: of libjpeg, whose fault would end the process, libpng and Targa's header.
  * WebP: until 3.0 its writer halves the colours even when it is asked to lose nothing. */
 static const image_format formats[] = {
-    {"PNG", "png", {"png"}, U8 | U16, ALL},
-    {"JPEG", "jpeg", {"jpg", "jpeg", "jpe"}, U8, GRAY | RGB},
-    {"TIFF", "tiff", {"tif", "tiff"}, U8 | U16 | FLOAT, ALL},
-    {"OpenEXR", "openexr", {"exr"}, HALF | FLOAT, ALL},
-    {"WebP", "webp", {"webp"}, 0, 0},
-    {"BMP", "bmp", {"bmp"}, U8, GRAY | RGB | RGBA},
-    {"Radiance HDR", "hdr", {"hdr"}, FLOAT, RGB},
-    {"PNM", "pnm", {"ppm", "pgm", "pnm"}, U8, GRAY | RGB},
-    {"Targa", "targa", {"tga"}, U8, ALL},
+    {"PNG", "png", {"png"}, U8 | U16, ALL, 1000000},
+    {"JPEG", "jpeg", {"jpg", "jpeg", "jpe"}, U8, GRAY | RGB, 65500},
+    {"TIFF", "tiff", {"tif", "tiff"}, U8 | U16 | FLOAT, ALL, 0},
+    {"OpenEXR", "openexr", {"exr"}, HALF | FLOAT, ALL, 0},
+    {"WebP", "webp", {"webp"}, 0, 0, 0},
+    {"BMP", "bmp", {"bmp"}, U8, GRAY | RGB | RGBA, 0},
+    {"Radiance HDR", "hdr", {"hdr"}, FLOAT, RGB, 0},
+    {"PNM", "pnm", {"ppm", "pgm", "pnm"}, U8, GRAY | RGB, 0},
+    {"Targa", "targa", {"tga"}, U8, ALL, 65535},
 };
 #define FORMATS (sizeof formats / sizeof *formats)
 enum { PNG, JPEG, TIFF, EXR, WEBP, BMP, HDR, PNM, TARGA };

@@ -14,6 +14,7 @@ typedef struct image_format {
   const char *suffixes[5]; /* lower case; NULL ends */
   unsigned types;          /* bit 1 << recede_type: written without loss; 0: only read */
   unsigned channels;       /* bit 1 << channels */
+  int longest;             /* side it can have, px, of those that --size can ask for; 0: any */
 } image_format;
 
 /* By the first bytes, whatever the file is called; only Targa, which has no mark of its own, by the

@@ -31,16 +31,21 @@ static bool holds_values(const char *output) {
 
 static command_exit check_format(const scale_map *this) {
   image_message message;
-  const char *output = this->given->output;
-  recede_type type = holds_values(output) ? RECEDE_FLOAT : RECEDE_U8;
-  if (image_file_can_write(output, NULL, type, &message)) return EXIT_DONE;
-  return command_refuse_image(output, IMAGE_OUTPUT, &message);
+  const options *given = this->given;
+  const recede_view *view = &this->file.view;
+  int width = given->input ? view->width : given->width;
+  int height = given->input ? view->height : given->height;
+  recede_type type = holds_values(given->output) ? RECEDE_FLOAT : RECEDE_U8;
+  if (image_file_can_write(given->output, NULL, width, height, type, &message)) return EXIT_DONE;
+  return command_refuse_image(given->output, IMAGE_OUTPUT, &message);
 }
 
 /* The pixels are only needed where the orientation is read from them. */
 static command_exit read_input(scale_map *this) {
   options *given = this->given;
   if (!given->input) {
+    command_exit format = check_format(this);
+    if (format != EXIT_DONE) return format;
     uint64_t bytes = pixels_bytes(given->width, given->height, 1, RECEDE_FLOAT);
     uint64_t limit = given->memory_bytes ? given->memory_bytes : (uint64_t)1 << 30;
     if (bytes > limit) {
@@ -55,6 +60,7 @@ static command_exit read_input(scale_map *this) {
     return this->picture.data ? EXIT_DONE : no_memory();
   }
   command_exit code = command_open(given->input, given, &this->file);
+  if (code == EXIT_DONE) code = check_format(this);
   if (code == EXIT_DONE) code = command_read(&this->file);
   this->picture = this->file.view;
   return code;
@@ -178,7 +184,6 @@ static command_exit write_map(scale_map *this) {
 command_exit command_scale_map(options *given) {
   scale_map this = {.given = given};
   command_exit code = command_check_outputs(given);
-  if (code == EXIT_DONE) code = check_format(&this);
   if (code == EXIT_DONE) code = read_input(&this);
   if (code == EXIT_DONE) code = find_plane(&this);
   if (code == EXIT_DONE) code = make_map(&this);

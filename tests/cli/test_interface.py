@@ -98,6 +98,27 @@ def test_limits_are_5(folder):
     check(not (folder / "out.png").exists())
 
 
+def test_sides_that_a_format_cannot_have(folder):
+    """Said before the work, with 4, the limit and the size."""
+    image = write(folder / "in.png", texture())
+    for suffix, limit, side in (("jpg", 65500, 65501), ("tga", 65535, 65536),
+                                ("png", 1000000, 1000001)):
+        for size in (f"{side}x2", f"2x{side}"):
+            out = folder / f"out.{suffix}"
+            # Too little memory for the work: it is not reached.
+            for command in (["synthesize", image, "--memory", "1"], ["scale-map"]):
+                done = recede(*command, "--size", size, "--frontal", "-o", out, code=4)
+                check(str(limit).encode() in done.stderr and str(side).encode() in done.stderr,
+                      done.stderr)
+                check(not out.exists() and done.stderr.startswith(b"recede: "))
+    recede("scale-map", "--size", "65500x1", "--frontal", "-o", folder / "out.jpg")
+    long = folder / "long.ppm"
+    long.write_bytes(b"P5\n66000 2\n255\n" + bytes(range(250)) * 528)
+    mask = folder / "mask.pgm"
+    mask.write_bytes(b"P5\n66000 2\n255\n" + bytes(30000) + b"\xff" * 9 + bytes(101991))
+    recede("fill", long, "--mask", mask, "--frontal", "-o", folder / "out2.jpg", code=4)
+
+
 def test_every_option_is_taken(folder):
     image, mask = pair(folder)
     source = write(folder / "source.png", np.full((48, 64), 255, np.uint8))
