@@ -126,7 +126,6 @@ static uint64_t picture_limit(const options *given) {
 
 command_exit command_open(const char *path, const options *given, image_file *file) {
   image_message message;
-  image_codec_set_threads(given->threads > 64 ? 64 : given->threads);
   image_status status = image_file_open(path, picture_limit(given), file, &message);
   return status == IMAGE_OK ? EXIT_DONE : command_refuse_image(path, status, &message);
 }

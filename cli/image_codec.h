@@ -44,8 +44,9 @@ typedef struct image_info {
 
 typedef struct image_decoder image_decoder;
 
-/* 0: all processors. */
-void image_codec_set_threads(int threads);
+/* Once, before anything else here. threads: 0 is all processors. Keeps the library from printing.
+ */
+void image_codec_init(int threads);
 
 /* format: OpenImageIO's name of it. bytes must live as long as the decoder. Reads no pixel. */
 image_status image_decoder_new(const char *format, const void *bytes, size_t size,

@@ -239,7 +239,7 @@ image_status copy_out(const std::vector<unsigned char> &from, image_bytes *bytes
 
 } // namespace
 
-extern "C" void image_codec_set_threads(int threads) {
+extern "C" void image_codec_init(int threads) {
   image_message ignored;
   guarded(&ignored, [&] {
     OIIO::attribute("threads", threads);

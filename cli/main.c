@@ -27,11 +27,16 @@ static const char usage[] =
     "  recede COMMAND --help   the options of a command\n"
     "  recede --version        the version\n";
 
+/* The image library starts as many as it is told, and gains nothing from more. */
+#define MOST_CODEC_THREADS 64
+
 static int run(size_t index, int argc, char **argv) {
   options given;
   command_exit code = EXIT_USAGE;
-  if (options_parse(commands[index].command, argc, argv, &given))
+  if (options_parse(commands[index].command, argc, argv, &given)) {
+    image_codec_init(given.threads > MOST_CODEC_THREADS ? MOST_CODEC_THREADS : given.threads);
     code = commands[index].run(&given);
+  }
   options_clear(&given);
   return (int)code;
 }

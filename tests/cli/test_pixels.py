@@ -131,13 +131,22 @@ def test_premultiplied_colours(folder):
     check((after[hole() > 0][:, 3] == 1).all(), "the fill is not opaque")
 
 
-def write_tiff(path, rgba, extra_samples):
-    """cv2 cannot say what its alpha means: the plainest TIFF of float RGBA, by hand."""
+def write_tiff(path, rgba, extra_samples, big=False):
+    """cv2 cannot say what its alpha means: the plainest TIFF of float RGBA, by hand; or BigTIFF."""
     height, width = rgba.shape[:2]
     data = rgba[:, :, [2, 1, 0, 3]].astype("<f4").tobytes()
     tags = [(256, 3, 1, width), (257, 3, 1, height), (258, 3, 4, 8), (259, 3, 1, 1),
             (262, 3, 1, 2), (273, 4, 1, 24), (277, 3, 1, 4), (278, 3, 1, height),
             (279, 4, 1, len(data)), (284, 3, 1, 1), (338, 3, 1, extra_samples), (339, 3, 4, 16)]
+    if big:
+        values = {258: 0x20002000200020, 339: 0x3000300030003, 273: 16}
+        tags = [(tag, kind, count, values.get(tag, value)) for tag, kind, count, value in tags]
+        tags.append((315, 2, 4, int.from_bytes(b"Ann", "little")))
+        tags.sort()
+        folder = struct.pack("<Q", len(tags)) + b"".join(struct.pack("<HHQQ", *t) for t in tags)
+        head = b"II+\0" + struct.pack("<HHQ", 8, 0, 16 + len(data))
+        path.write_bytes(head + data + folder + bytes(8))
+        return path
     folder = struct.pack("<H", len(tags)) + b"".join(struct.pack("<HHII", *tag) for tag in tags)
     head = b"II*\0" + struct.pack("<I8H", 24 + len(data), 32, 32, 32, 32, 3, 3, 3, 3)
     path.write_bytes(head + data + folder + bytes(4))
@@ -149,14 +158,15 @@ def test_alpha_keeps_its_kind(folder):
     pixels = texture(channels=4, kind="float").clip(.05, 1)
     pixels[:, 44:, 3] = .5
     write(folder / "mask.png", hole())
-    for name, extra_samples in (("Unassociated", 2), ("Associated", 1)):
-        image = write_tiff(folder / f"{name}.tif", pixels, extra_samples)
+    for name, extra_samples, big in (("Unassociated", 2, False), ("Associated", 1, False),
+                                     ("Unassociated", 2, True), ("Associated", 1, True)):
+        image = write_tiff(folder / f"{name}.tif", pixels, extra_samples, big)
         for suffix in ("tif", "exr"):
             recede("fill", image, "--mask", folder / "mask.png", "--frontal", "-q", "-o",
-                   folder / f"{name}-out.{suffix}")
-        said = subprocess.run(["exiftool", "-s3", "-ExtraSamples", str(folder / f"{name}-out.tif")],
+                   folder / f"{name}-out.{suffix}", "--force")
+        said = subprocess.run(["exiftool", "-s3", "-ExtraSamples", "-Artist", str(folder / f"{name}-out.tif")],
                               capture_output=True, check=True, text=True).stdout
-        check(said.startswith(name), name, "became", said)
+        check(said.startswith(name) and ("Ann" in said) == big, name, big, "became", said)
         expected = pixels.copy()
         if name == "Unassociated":
             expected[:, :, :3] *= expected[:, :, 3:]
