@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "mask_file.h"
 #include "safe_file.h"
 
 /* Pixels of a picture, without --memory: 350 megapixels of 8-bit RGB, 64 of float with alpha. The
@@ -138,15 +139,10 @@ command_exit command_read(image_file *file) {
 
 command_exit command_read_mask(const char *path, const options *given, const image_file *picture,
                                recede_view *mask) {
-  image_message message;
-  bool ambiguous;
-  image_status status =
-      image_file_read_mask(path, picture, picture_limit(given), mask, &ambiguous, &message);
+  image_message message, note;
+  image_status status = mask_file_read(path, picture, picture_limit(given), mask, &note, &message);
   if (status != IMAGE_OK) return command_refuse_image(path, status, &message);
-  if (ambiguous)
-    command_warn(given, path,
-                 "The picture is stored turned (Exif orientation) and the mask fits both ways: it "
-                 "was taken to lie on the stored rows.");
+  command_warn(given, path, note.text);
   return EXIT_DONE;
 }
 

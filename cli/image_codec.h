@@ -32,9 +32,11 @@ typedef struct image_message {
 typedef struct image_info {
   int width, height, channels;
   recede_type type;
-  int orientation;     /* Exif 1..8: how the stored rows must be turned to be seen */
-  bool turn_given;     /* the file itself says so */
-  int stored_bits;     /* of a sample in the file: 1, 2, 4 are expanded to 8 */
+  int orientation; /* Exif 1..8: how the stored rows must be turned to be seen */
+  bool turn_given; /* the file itself says so */
+  int stored_bits; /* of a sample in the file: 1, 2, 4 are expanded to 8 */
+  bool has_window; /* OpenEXR: the pixels lie at x, y of a frame that may be larger or smaller */
+  int x, y, frame_width, frame_height;
   double dpi_x, dpi_y; /* 0: unknown */
   bool premultiplied;  /* colours are stored multiplied by alpha */
   bool profile;        /* of colours (ICC) */

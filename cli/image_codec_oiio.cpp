@@ -137,6 +137,10 @@ image_info describe(const ImageSpec &spec, const std::string &format) {
   info.channels = spec.nchannels;
   type_of(spec.format, &info.type);
   info.stored_bits = spec.get_int_attribute("oiio:BitsPerSample", int(spec.format.size()) * 8);
+  info.has_window = format == "openexr";
+  if (info.has_window) info.x = spec.x - spec.full_x, info.y = spec.y - spec.full_y;
+  info.frame_width = info.has_window ? spec.full_width : spec.width;
+  info.frame_height = info.has_window ? spec.full_height : spec.height;
   info.dpi_x = dpi_of(spec, "XResolution");
   info.dpi_y = dpi_of(spec, "YResolution");
   // Targa's reader gives the rows as seen, and the tag besides.

@@ -125,8 +125,7 @@ image_status image_file_open(const char *path, uint64_t limit, image_file *file,
   return status;
 }
 
-/* Stored rows into seen ones, in fresh memory. */
-static image_status turn_view(recede_view *view, int orientation, image_message *message) {
+image_status image_file_turn(recede_view *view, int orientation, image_message *message) {
   bool swap = pixels_turn_swaps(orientation);
   if (orientation == 1) return IMAGE_OK;
   recede_view turned = pixels_new(swap ? view->height : view->width,
@@ -138,16 +137,13 @@ static image_status turn_view(recede_view *view, int orientation, image_message 
   return IMAGE_OK;
 }
 
-static image_status read_stored(image_file *file, recede_view *stored, image_message *message) {
-  const image_info *info = &file->info;
-  *stored = pixels_new(info->width, info->height, info->channels, info->type);
-  if (!stored->data) return fail(message, IMAGE_NO_MEMORY, "not enough memory for its pixels");
-  return image_decoder_read(file->decoder, stored->data, message);
-}
-
 image_status image_file_read(image_file *file, image_message *message) {
-  image_status status = read_stored(file, &file->view, message);
-  return status == IMAGE_OK ? turn_view(&file->view, file->info.orientation, message) : status;
+  const image_info *info = &file->info;
+  file->view = pixels_new(info->width, info->height, info->channels, info->type);
+  if (!file->view.data) return fail(message, IMAGE_NO_MEMORY, "not enough memory for its pixels");
+  image_status status = image_decoder_read(file->decoder, file->view.data, message);
+  return status == IMAGE_OK ? image_file_turn(&file->view, file->info.orientation, message)
+                            : status;
 }
 
 void image_file_close(image_file *file) {
@@ -156,54 +152,6 @@ void image_file_close(image_file *file) {
   image_bytes_free(&file->bytes);
   free(file->view.data);
   file->view.data = NULL;
-}
-
-/* ------------------------------------------------------------------------------------ mask -- */
-
-/* How the mask's stored rows must be turned to lie on the picture as seen; 0: it does not fit. */
-static int turn_of_mask(const image_file *mask, const image_file *picture, bool *ambiguous) {
-  const image_info *info = &mask->info;
-  bool seen = info->width == picture->view.width && info->height == picture->view.height;
-  bool stored = info->width == picture->info.width && info->height == picture->info.height;
-  *ambiguous = false;
-  if (info->orientation != 1) { /* it says itself how it is seen */
-    bool fits =
-        mask->view.width == picture->view.width && mask->view.height == picture->view.height;
-    return fits ? info->orientation : 0;
-  }
-  *ambiguous = seen && stored && picture->info.orientation != 1;
-  return stored ? picture->info.orientation : seen ? 1 : 0;
-}
-
-static image_status make_mask(image_file *file, const image_file *picture, recede_view *mask,
-                              bool *ambiguous, image_message *message) {
-  int bad_x, bad_y;
-  int turn = turn_of_mask(file, picture, ambiguous);
-  if (!turn)
-    return fail(message, IMAGE_MALFORMED, "it is %d x %d px, the picture %d x %d: they must agree",
-                file->view.width, file->view.height, picture->view.width, picture->view.height);
-  image_status status = read_stored(file, &file->view, message);
-  if (status != IMAGE_OK) return status;
-  *mask = pixels_new(file->info.width, file->info.height, 1,
-                     file->info.type == RECEDE_U8 ? RECEDE_U8 : RECEDE_FLOAT);
-  if (!mask->data) return fail(message, IMAGE_NO_MEMORY, "not enough memory for the mask");
-  if (!pixels_to_mask(&file->view, mask, &bad_x, &bad_y))
-    return fail(message, IMAGE_MALFORMED, "its pixel (%d, %d) is not a finite number", bad_x,
-                bad_y);
-  return turn_view(mask, turn, message);
-}
-
-image_status image_file_read_mask(const char *path, const image_file *picture, uint64_t limit,
-                                  recede_view *mask, bool *ambiguous, image_message *message) {
-  image_file file;
-  mask->data = NULL;
-  image_status status = image_file_open(path, limit, &file, message);
-  if (status == IMAGE_OK) status = make_mask(&file, picture, mask, ambiguous, message);
-  image_file_close(&file);
-  if (status == IMAGE_OK) return status;
-  free(mask->data);
-  mask->data = NULL;
-  return status;
 }
 
 /* ----------------------------------------------------------------------------------- write -- */

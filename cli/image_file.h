@@ -26,14 +26,9 @@ typedef struct image_file {
 image_status image_file_open(const char *path, uint64_t limit_bytes, image_file *file,
                              image_message *message);
 image_status image_file_read(image_file *file, image_message *message);
+/* Stored rows into seen ones, in fresh memory; the view's own is freed. */
+image_status image_file_turn(recede_view *view, int orientation, image_message *message);
 void image_file_close(image_file *file);
-
-/* A mask, read as one channel in the picture's frame as seen: luminance times alpha. Its own Exif
- * orientation is honoured; without one it may have the picture's seen or stored size. Where both
- * fit (square pictures, turned by 180 degrees, mirrored) it is taken as stored, and *ambiguous is
- * set. mask->data: free(). */
-image_status image_file_read_mask(const char *path, const image_file *picture, uint64_t limit_bytes,
-                                  recede_view *mask, bool *ambiguous, image_message *message);
 
 /* What the output's format would do to a picture of this size. like: what it is made from; NULL:
  * none. false: it cannot hold it, message says what to

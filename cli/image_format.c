@@ -87,6 +87,10 @@ bool image_format_holds(const image_format *format, recede_type type) {
   return (format->types & (1u << type)) != 0;
 }
 
+bool image_format_lossy(const image_format *format) {
+  return format == &formats[JPEG] || format == &formats[WEBP];
+}
+
 static unsigned big16(const unsigned char *at) { return (unsigned)at[0] << 8 | at[1]; }
 
 /* Where the entropy-coded data that starts at `at` ends: the next marker that is no restart. */

@@ -27,6 +27,8 @@ const image_format *image_format_of_name(const char *path);
 const char *image_format_read(void);
 const char *image_format_written(void);
 
+/* May have been compressed with loss. */
+bool image_format_lossy(const image_format *format);
 bool image_format_holds(const image_format *format, recede_type type);
 
 /* false: the bytes are surely no whole file (a JPEG without its end, which decoders take for a
