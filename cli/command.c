@@ -235,6 +235,14 @@ command_exit command_write(const options *given, const recede_view *result, cons
   return code;
 }
 
+command_exit command_end_output(void) {
+  char text[200];
+  if (fflush(stdout) == 0 && !ferror(stdout)) return EXIT_DONE;
+  snprintf(text, sizeof text, "standard output: %s", strerror(errno));
+  command_complain(NULL, text);
+  return EXIT_OUTPUT;
+}
+
 void command_doubt(const options *given, const recede_orientation *orientation) {
   char text[200];
   if (!orientation->estimated || orientation->confidence >= RECEDE_CONFIDENCE_LOW) return;
@@ -249,6 +257,12 @@ command_exit command_report(const options *given, const recede_report *report,
                             const report_scale *scale) {
   char message[300];
   command_warn(given, NULL, report->warning);
+  if (report->nonfinite_pixels > 0) {
+    snprintf(message, sizeof message,
+             "%llu px are no numbers, infinite or beyond 1e9: nothing was copied from them.",
+             (unsigned long long)report->nonfinite_pixels);
+    command_warn(given, NULL, message);
+  }
   if (!given->json) return EXIT_DONE;
   if (report_write(given->json, given->force, report, scale, message, sizeof message))
     return EXIT_DONE;

@@ -273,7 +273,7 @@ extern "C" image_status image_decoder_new(const char *format, const void *bytes,
     std::string why_not = objection(made->spec);
     if (!why_not.empty()) return fail(message, IMAGE_UNSUPPORTED, why_not);
     *info = describe(made->spec, made->format);
-    if (made->format == "tiff" || made->format == "openexr" || made->format == "gif")
+    if (made->format == "tiff" || made->format == "openexr")
       info->several = made->input->seek_subimage(1, 0);
     error_of(made->input.get(), "");
     *decoder = made.release();

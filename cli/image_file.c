@@ -112,6 +112,7 @@ image_status image_file_open(const char *path, uint64_t limit, image_file *file,
   if (status != IMAGE_OK) return status;
   image_format_png_header(file->bytes.data, file->bytes.size, &file->info.stored_bits,
                           &file->info.indexed);
+  file->info.several |= image_format_animated(file->format, file->bytes.data, file->bytes.size);
   status = metadata_read(file, message);
   if (status != IMAGE_OK) return status;
   status = check_size(file, limit, message);
@@ -178,6 +179,29 @@ static int written_channels(const image_format *format, int channels) {
   return channels % 2 == 0 && (format->channels & (1u << 4)) ? 4 : 3;
 }
 
+static void note(image_message *message, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+static void note(image_message *message, const char *format, ...) {
+  size_t used = strlen(message->text);
+  va_list arguments;
+  if (used) message->text[used++] = ' ';
+  va_start(arguments, format);
+  vsnprintf(message->text + used, sizeof message->text - used, format, arguments);
+  va_end(arguments);
+}
+
+/* What reading alone has changed. */
+static void note_input(const image_file *like, image_message *message) {
+  const image_info *info = &like->info;
+  int bits = 8 * (int)pixels_type_bytes(info->type);
+  if (info->several) note(message, "The input holds several pictures: the first was used alone.");
+  if (info->indexed)
+    note(message, "The palette was expanded: the output is RGB.");
+  else if (info->stored_bits < bits)
+    note(message, "The input has %d-bit samples: they were expanded to %d bits.", info->stored_bits,
+         bits);
+}
+
 bool image_file_can_write(const char *path, const image_file *like, int width, int height,
                           recede_type type, image_message *message) {
   const image_format *format = image_format_of_name(path);
@@ -204,12 +228,11 @@ bool image_file_can_write(const char *path, const image_file *like, int width, i
          format->name, format->longest, width, height);
     return false;
   }
+  if (like) note_input(like, message);
   if (written == RECEDE_U8 && type == RECEDE_U16)
-    fail(message, IMAGE_OK, "%s holds 8 bits: 16 were reduced to 8.", format->name);
-  if (like && like->info.several)
-    fail(message, IMAGE_OK, "The input holds several pictures: the first was used alone.");
-  else if (like && like->info.indexed)
-    fail(message, IMAGE_OK, "The palette was expanded: the output is RGB.");
+    note(message, "%s holds 8 bits: 16 were reduced to 8.", format->name);
+  if (written == RECEDE_FLOAT && type == RECEDE_HALF)
+    note(message, "%s gets floats of 32 bits: half is not written there.", format->name);
   return true;
 }
 

@@ -146,3 +146,15 @@ bool image_format_png_header(const unsigned char *bytes, size_t size, int *bits,
   *indexed = bytes[25] == 3;
   return true;
 }
+
+/* APNG says so before the pixels, in a chunk "acTL"; WebP in the flags of its chunk "VP8X". */
+bool image_format_animated(const image_format *format, const unsigned char *bytes, size_t size) {
+  if (format == &formats[WEBP])
+    return size > 20 && memcmp(bytes + 12, "VP8X", 4) == 0 && (bytes[20] & 2);
+  if (format != &formats[PNG]) return false;
+  for (size_t at = 8; at + 8 <= size && memcmp(bytes + at + 4, "IDAT", 4) != 0;) {
+    if (memcmp(bytes + at + 4, "acTL", 4) == 0) return true;
+    at += 12 + ((size_t)big16(bytes + at) << 16 | big16(bytes + at + 2));
+  }
+  return false;
+}

@@ -38,6 +38,8 @@ bool image_format_whole(const image_format *format, const unsigned char *bytes, 
 /* Colour channels as stored in a JPEG (4 is CMYK, whatever the decoder makes of it); 0: none said.
  */
 int image_format_jpeg_channels(const unsigned char *bytes, size_t size);
+/* An animated PNG or WebP, of which decoders give the first picture. */
+bool image_format_animated(const image_format *format, const unsigned char *bytes, size_t size);
 /* A PNG with a palette; its depth in *bits. */
 bool image_format_png_header(const unsigned char *bytes, size_t size, int *bits, bool *indexed);
 

@@ -50,9 +50,15 @@ int main(int argc, char **argv) {
     fputs(usage, stderr);
     return EXIT_USAGE;
   }
-  if (strcmp(argv[1], "--version") == 0) return printf("recede %s\n", RECEDE_VERSION) < 0;
-  if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0)
-    return fputs(usage, stdout) < 0;
+  if (strcmp(argv[1], "--version") == 0) {
+    printf("recede %s\n", RECEDE_VERSION);
+    return command_end_output();
+  }
+  if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
+      strcmp(argv[1], "help") == 0) {
+    fputs(usage, stdout);
+    return command_end_output();
+  }
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
     if (strcmp(argv[1], commands[i].name) == 0) return run(i, argc - 1, argv + 1);
   char text[200];

@@ -59,7 +59,11 @@ static void folder_of(const char *path, char folder[PATH_MAX]) {
 bool safe_file_check(const char *path, bool overwrite, char *message, size_t size) {
   char target[PATH_MAX], folder[PATH_MAX];
   struct stat status;
-  if (!resolve(path, target)) return refuse(message, size, errno, "");
+  if (!resolve(path, target)) {
+    if (errno != ENOENT) return refuse(message, size, errno, "");
+    snprintf(message, size, "it is a link to a file that is not there; remove it first");
+    return false;
+  }
   if (stat(target, &status) == 0) {
     if (S_ISDIR(status.st_mode)) return refuse(message, size, EISDIR, "");
     if (!S_ISREG(status.st_mode)) {

@@ -52,6 +52,8 @@ def test_usage_errors_are_2(folder):
     for more in wrong[::3 if harness.SANITIZED else 1]:
         done = recede("fill", *good, *more, code=2)
         check(done.stderr.startswith(b"recede: "), more, done.stderr)
+    done = recede("fill", *good, "--set", "none=1", code=2)
+    check(done.stderr.startswith(b"recede: --set: there is no parameter 'none'"), done.stderr)
     recede("fill", image, "-o", folder / "out.png", code=2)
     recede("fill", image, "--mask", mask, code=2)
     recede("fill", "--mask", mask, "-o", folder / "out.png", code=2)

@@ -3,6 +3,7 @@ turn, values that are no numbers."""
 import struct
 import subprocess
 import sys
+import zlib
 
 import numpy as np
 
@@ -94,6 +95,9 @@ def test_values_that_are_no_numbers(folder):
                            "--frontal", "-o", out)
         after = read(out)
         check(report["nonfinite_pixels"] >= 3, report["nonfinite_pixels"])
+        said = recede("fill", image, "--mask", folder / "mask.png", "--frontal", "-o", out,
+                      "--force").stderr
+        check(f"{report['nonfinite_pixels']} px are no numbers".encode() in said, said)
         check(np.isfinite(after[hole() > 0]).all(), "the fill is not finite")
         check(same_bits(outside(read(image), hole()), outside(after, hole())))
 
@@ -233,6 +237,9 @@ def test_few_bits_are_expanded(folder):
                     f"png:bit-depth={bits}", "-define", "png:color-type=0", image)
         recede("fill", image, "--mask", write(folder / "mask.png", hole()), "--frontal", "-q", "-o",
                folder / f"out{bits}.png")
+        said = recede("fill", image, "--mask", folder / "mask.png", "--frontal", "-o",
+                      folder / f"said{bits}.png").stderr
+        check(f"{bits}-bit samples".encode() in said, said)
         before, after = read(image), read(folder / f"out{bits}.png")
         check(np.array_equal(outside(before, hole()), outside(after, hole())), bits)
     run_convert(folder / "plain.png", "-colors", "16", "-type", "Palette",
@@ -242,6 +249,25 @@ def test_few_bits_are_expanded(folder):
     check(b"palette" in done.stderr, done.stderr)
     check(same_bits(outside(read(folder / "indexed.png"), hole()),
                     outside(read(folder / "out-indexed.png"), hole())))
+
+
+def test_several_pictures_in_a_file(folder):
+    """The first is used, and the loss of the others said."""
+    write(folder / "a.png", texture())
+    write(folder / "b.png", texture()[::-1])
+    run_convert(folder / "a.png", folder / "b.png", folder / "in.tif")
+    run_convert("-delay", 10, folder / "a.png", folder / "b.png", "-define", "webp:lossless=true",
+                folder / "in.webp")
+    plain = (folder / "a.png").read_bytes()
+    control = b"acTL" + struct.pack(">II", 1, 0)
+    chunk = struct.pack(">I", 8) + control + struct.pack(">I", zlib.crc32(control))
+    (folder / "in.png").write_bytes(plain[:33] + chunk + plain[33:])
+    for suffix in ("tif", "webp", "png"):
+        done = recede("fill", folder / f"in.{suffix}", "--mask", write(folder / "mask.png", hole()),
+                      "--frontal", "--force", "-o", folder / "out.png")
+        check(b"several pictures" in done.stderr, suffix, done.stderr)
+        check(same_bits(outside(texture(), hole()), outside(read(folder / "out.png")[:, :, :3],
+                                                           hole())), suffix)
 
 
 def test_what_cannot_be_kept_is_refused_by_name(folder):
@@ -263,7 +289,8 @@ def test_what_the_output_cannot_hold(folder):
     mask = write(folder / "mask.png", hole())
     images = {"u8": write(folder / "u8.png", texture()),
               "u16": write(folder / "u16.png", texture(kind="u16")),
-              "float": write(folder / "float.exr", texture(kind="float"))}
+              "float": write(folder / "float.exr", texture(kind="float")),
+              "half": write(folder / "half.exr", texture(kind="half"), half=True)}
     glass = texture(channels=4)
     glass[:, :9, 3] = 100
     images["glass"] = write(folder / "glass.png", glass)
@@ -277,6 +304,7 @@ def test_what_the_output_cannot_hold(folder):
     check(b".png or .tif" in fill("u8", "exr", 4))
     check(b"transparency" in fill("glass", "jpg", 4))
     check(b"reduced to 8" in fill("u16", "jpg", 0))
+    check(b"32 bits" in fill("half", "tif", 0) and fill("half", "exr", 0) == b"")
     fill("rgba", "jpg", 0)
     check(read(folder / "out.jpg").shape == (48, 64, 3))
     check(b"use .png" in fill("u8", "webp", 4))
