@@ -56,13 +56,13 @@ static GByteArray *bytes_of_digits(GByteArray *text) {
   unsigned long count = strtoul(at, &end, 10);
   if (count == 0 || count > text->len / 2) return NULL;
   GByteArray *bytes = g_byte_array_new();
-  int high = -1;
+  unsigned value = 0, digits = 0;
   for (; *end && bytes->len < count; end++) {
     int digit = g_ascii_xdigit_value(*end);
     if (digit < 0) continue;
-    uint8_t byte = (uint8_t)(high << 4 | digit);
-    if (high >= 0) g_byte_array_append(bytes, &byte, 1);
-    high = high < 0 ? digit : -1;
+    value = value << 4 | (unsigned)digit;
+    uint8_t byte = (uint8_t)value;
+    if (++digits % 2 == 0) g_byte_array_append(bytes, &byte, 1);
   }
   if (bytes->len == count) return bytes;
   g_byte_array_unref(bytes);

@@ -267,7 +267,7 @@ def test_layers_of_a_tiff_go(folder):
 
 
 def test_xmp_alone_turns_nothing(folder):
-    """Viewers turn by Exif; where XMP says something else, or alone says anything, it is not asked."""
+    """Viewers turn by Exif, whatever XMP says beside it or alone."""
     for suffix in ("png", "jpg", "tif"):
         for exif in (None, 3):
             image = write(folder / f"in.{suffix}", texture())

@@ -168,7 +168,8 @@ def test_alpha_keeps_its_kind(folder):
         for suffix in ("tif", "exr"):
             recede("fill", image, "--mask", folder / "mask.png", "--frontal", "-q", "-o",
                    folder / f"{name}-out.{suffix}", "--force")
-        said = subprocess.run(["exiftool", "-s3", "-ExtraSamples", "-Artist", str(folder / f"{name}-out.tif")],
+        said = subprocess.run(["exiftool", "-s3", "-ExtraSamples", "-Artist",
+                               str(folder / f"{name}-out.tif")],
                               capture_output=True, check=True, text=True).stdout
         check(said.startswith(name) and ("Ann" in said) == big, name, big, "became", said)
         expected = pixels.copy()
