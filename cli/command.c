@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "mask_file.h"
 #include "safe_file.h"
 
 /* Pixels of a picture, without --memory: 350 megapixels of 8-bit RGB, 64 of float with alpha. The
@@ -126,7 +127,6 @@ static uint64_t picture_limit(const options *given) {
 
 command_exit command_open(const char *path, const options *given, image_file *file) {
   image_message message;
-  image_codec_set_threads(given->threads > 64 ? 64 : given->threads);
   image_status status = image_file_open(path, picture_limit(given), file, &message);
   return status == IMAGE_OK ? EXIT_DONE : command_refuse_image(path, status, &message);
 }
@@ -139,15 +139,10 @@ command_exit command_read(image_file *file) {
 
 command_exit command_read_mask(const char *path, const options *given, const image_file *picture,
                                recede_view *mask) {
-  image_message message;
-  bool ambiguous;
-  image_status status =
-      image_file_read_mask(path, picture, picture_limit(given), mask, &ambiguous, &message);
+  image_message message, note;
+  image_status status = mask_file_read(path, picture, picture_limit(given), mask, &note, &message);
   if (status != IMAGE_OK) return command_refuse_image(path, status, &message);
-  if (ambiguous)
-    command_warn(given, path,
-                 "The picture is stored turned (Exif orientation) and the mask fits both ways: it "
-                 "was taken to lie on the stored rows.");
+  command_warn(given, path, note.text);
   return EXIT_DONE;
 }
 
@@ -193,11 +188,29 @@ static command_exit check_output(const char *path, const options *given) {
   return EXIT_OUTPUT;
 }
 
+/* The report must not replace a picture, not even with --force. */
+static command_exit check_json(const options *given) {
+  const struct {
+    const char *path, *what;
+  } pictures[] = {{given->output, "-o"},
+                  {given->input, "the picture"},
+                  {given->mask, "--mask"},
+                  {given->source, "--source"}};
+  for (size_t i = 0; i < sizeof pictures / sizeof *pictures; i++)
+    if (pictures[i].path && safe_file_same(given->json, pictures[i].path)) {
+      char text[100];
+      snprintf(text, sizeof text, "--json names the same file as %s; give it another name",
+               pictures[i].what);
+      command_complain(given->json, text);
+      return EXIT_USAGE;
+    }
+  return check_output(given->json, given);
+}
+
 command_exit command_check_outputs(const options *given) {
   command_exit code = EXIT_DONE;
-  if (given->output) code = check_output(given->output, given);
-  if (code == EXIT_DONE && given->json && strcmp(given->json, "-") != 0)
-    code = check_output(given->json, given);
+  if (given->json && strcmp(given->json, "-") != 0) code = check_json(given);
+  if (code == EXIT_DONE && given->output) code = check_output(given->output, given);
   return code;
 }
 
@@ -222,6 +235,14 @@ command_exit command_write(const options *given, const recede_view *result, cons
   return code;
 }
 
+command_exit command_end_output(void) {
+  char text[200];
+  if (fflush(stdout) == 0 && !ferror(stdout)) return EXIT_DONE;
+  snprintf(text, sizeof text, "standard output: %s", strerror(errno));
+  command_complain(NULL, text);
+  return EXIT_OUTPUT;
+}
+
 void command_doubt(const options *given, const recede_orientation *orientation) {
   char text[200];
   if (!orientation->estimated || orientation->confidence >= RECEDE_CONFIDENCE_LOW) return;
@@ -236,6 +257,12 @@ command_exit command_report(const options *given, const recede_report *report,
                             const report_scale *scale) {
   char message[300];
   command_warn(given, NULL, report->warning);
+  if (report->nonfinite_pixels > 0) {
+    snprintf(message, sizeof message,
+             "%llu px are no numbers, infinite or beyond 1e9: nothing was copied from them.",
+             (unsigned long long)report->nonfinite_pixels);
+    command_warn(given, NULL, message);
+  }
   if (!given->json) return EXIT_DONE;
   if (report_write(given->json, given->force, report, scale, message, sizeof message))
     return EXIT_DONE;

@@ -45,6 +45,9 @@ command_exit command_finish(const recede_job *job, recede_status status, const o
 command_exit command_write(const options *given, const recede_view *result, const image_file *like,
                            bool keep);
 
+/* Whether all that was printed arrived. */
+command_exit command_end_output(void);
+
 /* Says that an estimated orientation is not to be trusted, where that is so. */
 void command_doubt(const options *given, const recede_orientation *orientation);
 

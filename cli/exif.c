@@ -3,9 +3,11 @@
 #include <string.h>
 
 enum { POINTER_EXIF = 0x8769, POINTER_GPS = 0x8825, POINTER_INTEROP = 0xa005 };
+enum { TIFF = 42, BIG_TIFF = 43 };
 enum { THUMBNAIL_OFFSET = 0x201, THUMBNAIL_LENGTH = 0x202, STRIP_OFFSETS = 273, STRIP_BYTES = 279 };
 
-static const uint8_t type_sizes[] = {0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4};
+static const uint8_t type_sizes[] = {0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4, 0, 0, 8, 8, 8};
+enum { TYPE_WORD = 16 }; /* and above: BigTIFF's numbers of 64 bits */
 
 static size_t type_size(unsigned type) { return type < sizeof type_sizes ? type_sizes[type] : 0; }
 
@@ -14,7 +16,8 @@ static size_t type_size(unsigned type) { return type < sizeof type_sizes ? type_
 typedef struct source {
   const uint8_t *bytes;
   size_t size;
-  bool big;
+  bool big;  /* its bytes' order */
+  bool wide; /* BigTIFF: counts and offsets have 64 bits */
 } source;
 
 static uint16_t get16(bool big, const uint8_t *at) {
@@ -24,31 +27,55 @@ static uint32_t get32(bool big, const uint8_t *at) {
   return big ? (uint32_t)get16(big, at) << 16 | get16(big, at + 2)
              : (uint32_t)get16(big, at + 2) << 16 | get16(big, at);
 }
+/* A count or an offset. */
+static uint64_t get_word(const source *from, const uint8_t *at) {
+  if (!from->wide) return get32(from->big, at);
+  uint64_t first = get32(from->big, at), second = get32(from->big, at + 4);
+  return from->big ? first << 32 | second : second << 32 | first;
+}
+
+static size_t word_size(const source *from) { return from->wide ? 8 : 4; }
+static size_t count_size(const source *from) { return from->wide ? 8 : 2; }
+static size_t entry_size(const source *from) { return from->wide ? 20 : 12; }
 
 static bool open_source(const uint8_t *bytes, size_t size, source *from) {
-  if (size < 8 || (memcmp(bytes, "II*\0", 4) != 0 && memcmp(bytes, "MM\0*", 4) != 0)) return false;
-  *from = (source){bytes, size, bytes[0] == 'M'};
-  return true;
+  if (size < 8 || (memcmp(bytes, "II", 2) != 0 && memcmp(bytes, "MM", 2) != 0)) return false;
+  bool big = bytes[0] == 'M';
+  uint16_t version = get16(big, bytes + 2);
+  *from = (source){bytes, size, big, version == BIG_TIFF};
+  return version == TIFF || (version == BIG_TIFF && size >= 16);
+}
+
+static size_t first_folder(const source *from) {
+  return get_word(from, from->bytes + (from->wide ? 8 : 4));
 }
 
 /* Entries of the folder at an offset; 0: it does not lie within the bytes. */
-static unsigned folder_size(const source *from, size_t offset) {
-  if (offset < 8 || offset + 2 > from->size) return 0;
-  unsigned count = get16(from->big, from->bytes + offset);
-  return offset + 2 + (size_t)count * 12 <= from->size ? count : 0;
+static size_t folder_size(const source *from, size_t offset) {
+  size_t head = count_size(from);
+  if (offset < 8 || offset >= from->size || head > from->size - offset) return 0;
+  uint64_t count =
+      from->wide ? get_word(from, from->bytes + offset) : get16(from->big, from->bytes + offset);
+  return count <= (from->size - offset - head) / entry_size(from) ? count : 0;
+}
+
+static const uint8_t *entry_at(const source *from, size_t folder, size_t index) {
+  return from->bytes + folder + count_size(from) + index * entry_size(from);
 }
 
 static bool read_entry(const source *from, const uint8_t *at, exif_entry *entry) {
+  uint64_t count = get_word(from, at + 4);
   entry->tag = get16(from->big, at);
   entry->type = get16(from->big, at + 2);
-  entry->count = get32(from->big, at + 4);
-  entry->size = type_size(entry->type) * (size_t)entry->count;
-  entry->value = at + 8;
-  if (entry->size == 0) return false;
-  if (entry->size <= 4) return true;
-  size_t offset = get32(from->big, at + 8);
+  entry->value = at + 4 + word_size(from);
+  if (count == 0 || count > from->size || !type_size(entry->type)) return false;
+  entry->count = (uint32_t)count;
+  entry->size = type_size(entry->type) * (size_t)count;
+  if (entry->size <= word_size(from)) return true;
+  size_t offset = get_word(from, entry->value);
+  if (offset > from->size || entry->size > from->size - offset) return false;
   entry->value = from->bytes + offset;
-  return offset <= from->size && entry->size <= from->size - offset;
+  return true;
 }
 
 static bool is_pointer(uint16_t tag, exif_folder *folder) {
@@ -58,15 +85,18 @@ static bool is_pointer(uint16_t tag, exif_folder *folder) {
 
 /* The depth is bounded by the kinds of folder, so pointers in a circle end. */
 static void read_folder(const source *from, exif_folder folder, size_t offset, exif_tree *tree) {
-  unsigned count = folder_size(from, offset);
-  for (unsigned i = 0; i < count; i++) {
+  size_t count = folder_size(from, offset);
+  for (size_t i = 0; i < count; i++) {
     exif_entry entry = {.folder = folder};
     exif_folder below;
-    if (!read_entry(from, from->bytes + offset + 2 + (size_t)i * 12, &entry)) continue;
-    if (!is_pointer(entry.tag, &below))
-      g_array_append_val(tree->entries, entry);
-    else if (below > folder && entry.size == 4)
-      read_folder(from, below, get32(from->big, entry.value), tree);
+    if (!read_entry(from, entry_at(from, offset, i), &entry)) continue;
+    bool word = entry.type >= TYPE_WORD;
+    if (!is_pointer(entry.tag, &below)) {
+      if (!word) g_array_append_val(tree->entries, entry); /* a classic TIFF has no such numbers */
+    } else if (below > folder && (entry.size == 4 || entry.size == 8)) {
+      size_t to = word ? get_word(from, entry.value) : get32(from->big, entry.value);
+      read_folder(from, below, to, tree);
+    }
   }
 }
 
@@ -76,7 +106,7 @@ bool exif_read(const uint8_t *bytes, size_t size, exif_tree *tree) {
   tree->big_endian = false;
   if (!open_source(bytes, size, &from)) return false;
   tree->big_endian = from.big;
-  read_folder(&from, EXIF_MAIN, get32(from.big, bytes + 4), tree);
+  read_folder(&from, EXIF_MAIN, first_folder(&from), tree);
   return true;
 }
 
@@ -226,20 +256,20 @@ static size_t number_of(const source *from, const exif_entry *entry) {
 void exif_blank_thumbnail(uint8_t *bytes, size_t size) {
   source from;
   if (!open_source(bytes, size, &from)) return;
-  size_t main = get32(from.big, bytes + 4);
-  unsigned count = folder_size(&from, main);
-  size_t next = main + 2 + (size_t)count * 12;
-  if (count == 0 || next + 4 > size) return;
-  size_t second = get32(from.big, bytes + next), offset = 0, length = 0;
+  size_t main = first_folder(&from), count = folder_size(&from, main);
+  if (count == 0) return;
+  size_t next = (size_t)(entry_at(&from, main, count) - bytes);
+  if (word_size(&from) > size - next) return;
+  size_t second = get_word(&from, bytes + next), offset = 0, length = 0;
   count = folder_size(&from, second);
-  for (unsigned i = 0; i < count; i++) {
+  for (size_t i = 0; i < count; i++) {
     exif_entry entry;
-    if (!read_entry(&from, bytes + second + 2 + (size_t)i * 12, &entry) || entry.size > 4) continue;
+    if (!read_entry(&from, entry_at(&from, second, i), &entry) || entry.size > 4) continue;
     if (entry.tag == THUMBNAIL_OFFSET || entry.tag == STRIP_OFFSETS)
       offset = number_of(&from, &entry);
     if (entry.tag == THUMBNAIL_LENGTH || entry.tag == STRIP_BYTES)
       length = number_of(&from, &entry);
   }
   blank_range(bytes, size, offset, length);
-  memset(bytes + next, 0, 4);
+  memset(bytes + next, 0, word_size(&from));
 }

@@ -1,5 +1,5 @@
 /* exif.h - Exif, that is TIFF's tree of tags: read from a TIFF, or from the block that JPEG and PNG
- * carry; and written. BigTIFF is not read. */
+ * carry; and written. BigTIFF is read, never written. */
 #ifndef RECEDE_EXIF_H
 #define RECEDE_EXIF_H
 
@@ -23,13 +23,18 @@ typedef struct exif_tree {
 } exif_tree;
 
 enum {
+  EXIF_TAG_ORIENTATION = 274,
+  EXIF_TAG_X_RESOLUTION = 282,
+  EXIF_TAG_Y_RESOLUTION = 283,
+  EXIF_TAG_RESOLUTION_UNIT = 296,
   EXIF_TAG_XMP = 700,
   EXIF_TAG_IPTC = 33723,
   EXIF_TAG_PHOTOSHOP = 34377,
-  EXIF_TAG_PROFILE = 34675
+  EXIF_TAG_PROFILE = 34675,
+  EXIF_TAG_LAYERS = 37724
 };
 
-/* false: it is no classic TIFF structure; the tree is empty. Entries that lie outside the bytes are
+/* false: it is no TIFF structure; the tree is empty. Entries that lie outside the bytes are
  * left out. The bytes must live as long as the tree. */
 bool exif_read(const uint8_t *bytes, size_t size, exif_tree *tree);
 void exif_clear(exif_tree *tree);

@@ -17,7 +17,8 @@ typedef struct fill {
 static command_exit check_format(const fill *this) {
   image_message message;
   const image_file *file = &this->file;
-  bool good = image_file_can_write(this->given->output, file, file->info.type, &message);
+  bool good = image_file_can_write(this->given->output, file, file->view.width, file->view.height,
+                                   file->info.type, &message);
   if (!good) return command_refuse_image(this->given->output, IMAGE_OUTPUT, &message);
   command_warn(this->given, this->given->output, message.text);
   return EXIT_DONE;

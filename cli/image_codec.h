@@ -32,24 +32,32 @@ typedef struct image_message {
 typedef struct image_info {
   int width, height, channels;
   recede_type type;
-  int orientation;     /* Exif 1..8: how the stored rows must be turned to be seen */
-  int stored_bits;     /* of a sample in the file: 1, 2, 4 are expanded to 8 */
+  int orientation; /* Exif 1..8: how the stored rows must be turned to be seen */
+  bool turn_given; /* the file itself says so */
+  int stored_bits; /* of a sample in the file: 1, 2, 4 are expanded to 8 */
+  bool has_window; /* OpenEXR: the pixels lie at x, y of a frame that may be larger or smaller */
+  int x, y, frame_width, frame_height;
   double dpi_x, dpi_y; /* 0: unknown */
   bool premultiplied;  /* colours are stored multiplied by alpha */
+  bool profile;        /* of colours (ICC) */
   bool indexed;        /* a palette, expanded to RGB */
   bool several;        /* the file holds more pictures than the first */
 } image_info;
 
 typedef struct image_decoder image_decoder;
 
-/* 0: all processors. */
-void image_codec_set_threads(int threads);
+/* Once, before anything else here. threads: 0 is all processors. Keeps the library from printing.
+ */
+void image_codec_init(int threads);
 
 /* format: OpenImageIO's name of it. bytes must live as long as the decoder. Reads no pixel. */
 image_status image_decoder_new(const char *format, const void *bytes, size_t size,
                                image_decoder **decoder, image_info *info, image_message *message);
 /* data: room for height rows of width * channels samples of the info's type, without gaps. */
 image_status image_decoder_read(image_decoder *decoder, void *data, image_message *message);
+/* A colour profile that the decoder does not see itself. */
+image_status image_decoder_set_profile(image_decoder *decoder, const void *bytes, size_t size,
+                                       image_message *message);
 void image_decoder_free(image_decoder **decoder);
 
 /* A flat array, made and freed here. */
@@ -60,10 +68,11 @@ typedef struct image_bytes {
 void image_bytes_free(image_bytes *bytes);
 
 /* Encodes the view. like: where the colour profile, compression, resolution and, from EXR to EXR,
- * channel names come from; NULL: none. premultiplied: the view's colours are. keep: it is the same
- * picture, so EXR's attributes and windows come too. */
+ * channel names come from; NULL: none. premultiplied: the view's colours are. orientation: written
+ * where the format has a tag of its own for it. keep: it is the same picture, so EXR's attributes
+ * and windows come too. */
 image_status image_encode(const recede_view *view, const char *format, const image_decoder *like,
-                          bool premultiplied, bool keep, image_bytes *bytes,
+                          bool premultiplied, int orientation, bool keep, image_bytes *bytes,
                           image_message *message);
 
 #ifdef __cplusplus

@@ -73,7 +73,7 @@ static image_status check_before_decoder(const image_file *file, image_message *
   const unsigned char *data = file->bytes.data;
   if (!file->format)
     return fail(message, IMAGE_MALFORMED, "it is no picture of a kind we read (%s)",
-                image_format_suffixes());
+                image_format_read());
   if (strcmp(file->format->codec, "jpeg") != 0) return IMAGE_OK;
   if (image_format_jpeg_channels(data, file->bytes.size) == 4)
     return fail(message, IMAGE_UNSUPPORTED, "its colours are CMYK; convert it to RGB first");
@@ -112,8 +112,9 @@ image_status image_file_open(const char *path, uint64_t limit, image_file *file,
   if (status != IMAGE_OK) return status;
   image_format_png_header(file->bytes.data, file->bytes.size, &file->info.stored_bits,
                           &file->info.indexed);
-  if (strcmp(file->format->codec, "tiff") == 0)
-    file->info.premultiplied = metadata_tiff_is_premultiplied(file->bytes.data, file->bytes.size);
+  file->info.several |= image_format_animated(file->format, file->bytes.data, file->bytes.size);
+  status = metadata_read(file, message);
+  if (status != IMAGE_OK) return status;
   status = check_size(file, limit, message);
   bool swap = pixels_turn_swaps(file->info.orientation);
   file->view = (recede_view){NULL,
@@ -125,8 +126,7 @@ image_status image_file_open(const char *path, uint64_t limit, image_file *file,
   return status;
 }
 
-/* Stored rows into seen ones, in fresh memory. */
-static image_status turn_view(recede_view *view, int orientation, image_message *message) {
+image_status image_file_turn(recede_view *view, int orientation, image_message *message) {
   bool swap = pixels_turn_swaps(orientation);
   if (orientation == 1) return IMAGE_OK;
   recede_view turned = pixels_new(swap ? view->height : view->width,
@@ -138,71 +138,21 @@ static image_status turn_view(recede_view *view, int orientation, image_message 
   return IMAGE_OK;
 }
 
-static image_status read_stored(image_file *file, recede_view *stored, image_message *message) {
-  const image_info *info = &file->info;
-  *stored = pixels_new(info->width, info->height, info->channels, info->type);
-  if (!stored->data) return fail(message, IMAGE_NO_MEMORY, "not enough memory for its pixels");
-  return image_decoder_read(file->decoder, stored->data, message);
-}
-
 image_status image_file_read(image_file *file, image_message *message) {
-  image_status status = read_stored(file, &file->view, message);
-  return status == IMAGE_OK ? turn_view(&file->view, file->info.orientation, message) : status;
+  const image_info *info = &file->info;
+  file->view = pixels_new(info->width, info->height, info->channels, info->type);
+  if (!file->view.data) return fail(message, IMAGE_NO_MEMORY, "not enough memory for its pixels");
+  image_status status = image_decoder_read(file->decoder, file->view.data, message);
+  return status == IMAGE_OK ? image_file_turn(&file->view, file->info.orientation, message)
+                            : status;
 }
 
 void image_file_close(image_file *file) {
+  metadata_free(file);
   image_decoder_free(&file->decoder);
   image_bytes_free(&file->bytes);
   free(file->view.data);
   file->view.data = NULL;
-}
-
-/* ------------------------------------------------------------------------------------ mask -- */
-
-/* How the mask's stored rows must be turned to lie on the picture as seen; 0: it does not fit. */
-static int turn_of_mask(const image_file *mask, const image_file *picture, bool *ambiguous) {
-  const image_info *info = &mask->info;
-  bool seen = info->width == picture->view.width && info->height == picture->view.height;
-  bool stored = info->width == picture->info.width && info->height == picture->info.height;
-  *ambiguous = false;
-  if (info->orientation != 1) { /* it says itself how it is seen */
-    bool fits =
-        mask->view.width == picture->view.width && mask->view.height == picture->view.height;
-    return fits ? info->orientation : 0;
-  }
-  *ambiguous = seen && stored && picture->info.orientation != 1;
-  return stored ? picture->info.orientation : seen ? 1 : 0;
-}
-
-static image_status make_mask(image_file *file, const image_file *picture, recede_view *mask,
-                              bool *ambiguous, image_message *message) {
-  int bad_x, bad_y;
-  int turn = turn_of_mask(file, picture, ambiguous);
-  if (!turn)
-    return fail(message, IMAGE_MALFORMED, "it is %d x %d px, the picture %d x %d: they must agree",
-                file->view.width, file->view.height, picture->view.width, picture->view.height);
-  image_status status = read_stored(file, &file->view, message);
-  if (status != IMAGE_OK) return status;
-  *mask = pixels_new(file->info.width, file->info.height, 1,
-                     file->info.type == RECEDE_U8 ? RECEDE_U8 : RECEDE_FLOAT);
-  if (!mask->data) return fail(message, IMAGE_NO_MEMORY, "not enough memory for the mask");
-  if (!pixels_to_mask(&file->view, mask, &bad_x, &bad_y))
-    return fail(message, IMAGE_MALFORMED, "its pixel (%d, %d) is not a finite number", bad_x,
-                bad_y);
-  return turn_view(mask, turn, message);
-}
-
-image_status image_file_read_mask(const char *path, const image_file *picture, uint64_t limit,
-                                  recede_view *mask, bool *ambiguous, image_message *message) {
-  image_file file;
-  mask->data = NULL;
-  image_status status = image_file_open(path, limit, &file, message);
-  if (status == IMAGE_OK) status = make_mask(&file, picture, mask, ambiguous, message);
-  image_file_close(&file);
-  if (status == IMAGE_OK) return status;
-  free(mask->data);
-  mask->data = NULL;
-  return status;
 }
 
 /* ----------------------------------------------------------------------------------- write -- */
@@ -229,14 +179,43 @@ static int written_channels(const image_format *format, int channels) {
   return channels % 2 == 0 && (format->channels & (1u << 4)) ? 4 : 3;
 }
 
-bool image_file_can_write(const char *path, const image_file *like, recede_type type,
-                          image_message *message) {
+static void note(image_message *message, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+static void note(image_message *message, const char *format, ...) {
+  size_t used = strlen(message->text);
+  va_list arguments;
+  if (used) message->text[used++] = ' ';
+  va_start(arguments, format);
+  vsnprintf(message->text + used, sizeof message->text - used, format, arguments);
+  va_end(arguments);
+}
+
+/* What reading alone has changed. */
+static void note_input(const image_file *like, image_message *message) {
+  const image_info *info = &like->info;
+  int bits = 8 * (int)pixels_type_bytes(info->type);
+  if (info->several) note(message, "The input holds several pictures: the first was used alone.");
+  if (info->indexed)
+    note(message, "The palette was expanded: the output is RGB.");
+  else if (info->stored_bits < bits)
+    note(message, "The input has %d-bit samples: they were expanded to %d bits.", info->stored_bits,
+         bits);
+}
+
+bool image_file_can_write(const char *path, const image_file *like, int width, int height,
+                          recede_type type, image_message *message) {
   const image_format *format = image_format_of_name(path);
   recede_type written;
   message->text[0] = '\0';
   if (!format) {
-    fail(message, IMAGE_OUTPUT, "its suffix names no format we write (%s)",
-         image_format_suffixes());
+    fail(message, IMAGE_OUTPUT, "its suffix names no format we write (%s)", image_format_written());
+    return false;
+  }
+  if (!format->types) {
+    fail(message, IMAGE_OUTPUT,
+         "%s is read, not written: its encoder here would change pixels outside the mask; use .png "
+         "or .tif",
+         format->name);
     return false;
   }
   if (!written_type(format, type, &written)) {
@@ -244,12 +223,16 @@ bool image_file_can_write(const char *path, const image_file *like, recede_type 
          is_float(type) ? ".exr or .tif" : ".png or .tif");
     return false;
   }
+  if (format->longest && (width > format->longest || height > format->longest)) {
+    fail(message, IMAGE_OUTPUT, "%s holds sides of up to %d px, the result has %d x %d; use .tif",
+         format->name, format->longest, width, height);
+    return false;
+  }
+  if (like) note_input(like, message);
   if (written == RECEDE_U8 && type == RECEDE_U16)
-    fail(message, IMAGE_OK, "%s holds 8 bits: 16 were reduced to 8.", format->name);
-  if (like && like->info.several)
-    fail(message, IMAGE_OK, "The input holds several pictures: the first was used alone.");
-  else if (like && like->info.indexed)
-    fail(message, IMAGE_OK, "The palette was expanded: the output is RGB.");
+    note(message, "%s holds 8 bits: 16 were reduced to 8.", format->name);
+  if (written == RECEDE_FLOAT && type == RECEDE_HALF)
+    note(message, "%s gets floats of 32 bits: half is not written there.", format->name);
   return true;
 }
 
@@ -309,8 +292,8 @@ image_status image_file_encode(const char *path, const recede_view *seen, const 
   if (status == IMAGE_OK && !premultiplied && strcmp(format->codec, "openexr") == 0)
     status = premultiply(&stored, seen, message);
   if (status == IMAGE_OK)
-    status = image_encode(&stored, format->codec, like ? like->decoder : NULL, premultiplied, keep,
-                          bytes, message);
+    status = image_encode(&stored, format->codec, like ? like->decoder : NULL, premultiplied,
+                          orientation, keep, bytes, message);
   if (status == IMAGE_OK) status = metadata_carry(like, format, keep, bytes, message);
   if (stored.data != seen->data) free(stored.data);
   return status;

@@ -16,8 +16,9 @@ typedef struct image_file {
   const image_format *format;
   image_bytes bytes; /* the file as it is */
   image_decoder *decoder;
-  image_info info;  /* as stored */
-  recede_view view; /* as seen; data NULL before image_file_read() */
+  struct metadata_parts *metadata; /* what it says beside the pixels: metadata.h */
+  image_info info;                 /* as stored */
+  recede_view view;                /* as seen; data NULL before image_file_read() */
 } image_file;
 
 /* Reads the file's bytes and header. limit_bytes: of the decoded pixels. On any status but IMAGE_OK
@@ -25,19 +26,15 @@ typedef struct image_file {
 image_status image_file_open(const char *path, uint64_t limit_bytes, image_file *file,
                              image_message *message);
 image_status image_file_read(image_file *file, image_message *message);
+/* Stored rows into seen ones, in fresh memory; the view's own is freed. */
+image_status image_file_turn(recede_view *view, int orientation, image_message *message);
 void image_file_close(image_file *file);
 
-/* A mask, read as one channel in the picture's frame as seen: luminance times alpha. Its own Exif
- * orientation is honoured; without one it may have the picture's seen or stored size. Where both
- * fit (square pictures, turned by 180 degrees, mirrored) it is taken as stored, and *ambiguous is
- * set. mask->data: free(). */
-image_status image_file_read_mask(const char *path, const image_file *picture, uint64_t limit_bytes,
-                                  recede_view *mask, bool *ambiguous, image_message *message);
-
-/* What the output's format would do to this picture. false: it cannot hold it, message says what to
+/* What the output's format would do to a picture of this size. like: what it is made from; NULL:
+ * none. false: it cannot hold it, message says what to
  * use; else message is "" or says what will be reduced. */
-bool image_file_can_write(const char *path, const image_file *like, recede_type type,
-                          image_message *message);
+bool image_file_can_write(const char *path, const image_file *like, int width, int height,
+                          recede_type type, image_message *message);
 
 /* Encodes a picture as seen. like: where metadata, orientation, compression come from; NULL: none.
  * keep: it is the same picture, so Exif, XMP, IPTC and the turn of the stored rows stay; else only

@@ -13,24 +13,28 @@
 #define RGBA (1u << 4)
 #define ALL (GRAY | GRAY_ALPHA | RGB | RGBA)
 
-/* What the writers of OpenImageIO 2.4 were seen to keep bit for bit (JPEG, which cannot, apart). */
+/* What the writers of OpenImageIO 2.4 were seen to keep bit for bit (JPEG, which cannot, apart),
+ * and the longest sides: of libjpeg, whose fault would end the process, libpng and Targa's header.
+ * WebP: until 3.0 its writer halves the colours even when it is asked to lose nothing. */
 static const image_format formats[] = {
-    {"PNG", "png", {"png"}, U8 | U16, ALL},
-    {"JPEG", "jpeg", {"jpg", "jpeg", "jpe"}, U8, GRAY | RGB},
-    {"TIFF", "tiff", {"tif", "tiff"}, U8 | U16 | FLOAT, ALL},
-    {"OpenEXR", "openexr", {"exr"}, HALF | FLOAT, ALL},
-    {"WebP", "webp", {"webp"}, U8, RGB | RGBA},
-    {"BMP", "bmp", {"bmp"}, U8, GRAY | RGB | RGBA},
-    {"Radiance HDR", "hdr", {"hdr"}, FLOAT, RGB},
-    {"PNM", "pnm", {"ppm", "pgm", "pnm"}, U8, GRAY | RGB},
-    {"Targa", "targa", {"tga"}, U8, ALL},
+    {"PNG", "png", {"png"}, U8 | U16, ALL, 1000000},
+    {"JPEG", "jpeg", {"jpg", "jpeg", "jpe"}, U8, GRAY | RGB, 65500},
+    {"TIFF", "tiff", {"tif", "tiff"}, U8 | U16 | FLOAT, ALL, 0},
+    {"OpenEXR", "openexr", {"exr"}, HALF | FLOAT, ALL, 0},
+    {"WebP", "webp", {"webp"}, 0, 0, 0},
+    {"BMP", "bmp", {"bmp"}, U8, GRAY | RGB | RGBA, 0},
+    {"Radiance HDR", "hdr", {"hdr"}, FLOAT, RGB, 0},
+    {"PNM", "pnm", {"ppm", "pgm", "pnm"}, U8, GRAY | RGB, 0},
+    {"Targa", "targa", {"tga"}, U8, ALL, 65535},
 };
 #define FORMATS (sizeof formats / sizeof *formats)
 enum { PNG, JPEG, TIFF, EXR, WEBP, BMP, HDR, PNM, TARGA };
 
-const char *image_format_suffixes(void) {
+const char *image_format_read(void) {
   return ".png, .jpg, .tif, .exr, .webp, .bmp, .hdr, .ppm, .tga";
 }
+
+const char *image_format_written(void) { return ".png, .jpg, .tif, .exr, .bmp, .hdr, .ppm, .tga"; }
 
 const image_format *image_format_of_name(const char *path) {
   const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
@@ -81,6 +85,10 @@ const image_format *image_format_of_bytes(const unsigned char *bytes, size_t siz
 
 bool image_format_holds(const image_format *format, recede_type type) {
   return (format->types & (1u << type)) != 0;
+}
+
+bool image_format_lossy(const image_format *format) {
+  return format == &formats[JPEG] || format == &formats[WEBP];
 }
 
 static unsigned big16(const unsigned char *at) { return (unsigned)at[0] << 8 | at[1]; }
@@ -137,4 +145,16 @@ bool image_format_png_header(const unsigned char *bytes, size_t size, int *bits,
   *bits = bytes[24];
   *indexed = bytes[25] == 3;
   return true;
+}
+
+/* APNG says so before the pixels, in a chunk "acTL"; WebP in the flags of its chunk "VP8X". */
+bool image_format_animated(const image_format *format, const unsigned char *bytes, size_t size) {
+  if (format == &formats[WEBP])
+    return size > 20 && memcmp(bytes + 12, "VP8X", 4) == 0 && (bytes[20] & 2);
+  if (format != &formats[PNG]) return false;
+  for (size_t at = 8; at + 8 <= size && memcmp(bytes + at + 4, "IDAT", 4) != 0;) {
+    if (memcmp(bytes + at + 4, "acTL", 4) == 0) return true;
+    at += 12 + ((size_t)big16(bytes + at) << 16 | big16(bytes + at + 2));
+  }
+  return false;
 }

@@ -12,8 +12,9 @@ typedef struct image_format {
   const char *name;        /* as people write it */
   const char *codec;       /* as OpenImageIO does */
   const char *suffixes[5]; /* lower case; NULL ends */
-  unsigned types;          /* bit 1 << recede_type: written without loss of depth */
+  unsigned types;          /* bit 1 << recede_type: written without loss; 0: only read */
   unsigned channels;       /* bit 1 << channels */
+  int longest;             /* side it can have, px, of those that --size can ask for; 0: any */
 } image_format;
 
 /* By the first bytes, whatever the file is called; only Targa, which has no mark of its own, by the
@@ -22,9 +23,12 @@ const image_format *image_format_of_bytes(const unsigned char *bytes, size_t siz
                                           const char *path);
 /* By the suffix of the name, in either case. NULL: none of ours. */
 const image_format *image_format_of_name(const char *path);
-/* ".png, .tif, ...": what may be given as a suffix. */
-const char *image_format_suffixes(void);
+/* ".png, .tif, ...": what may be given as a suffix of an input, of an output. */
+const char *image_format_read(void);
+const char *image_format_written(void);
 
+/* May have been compressed with loss. */
+bool image_format_lossy(const image_format *format);
 bool image_format_holds(const image_format *format, recede_type type);
 
 /* false: the bytes are surely no whole file (a JPEG without its end, which decoders take for a
@@ -34,6 +38,8 @@ bool image_format_whole(const image_format *format, const unsigned char *bytes, 
 /* Colour channels as stored in a JPEG (4 is CMYK, whatever the decoder makes of it); 0: none said.
  */
 int image_format_jpeg_channels(const unsigned char *bytes, size_t size);
+/* An animated PNG or WebP, of which decoders give the first picture. */
+bool image_format_animated(const image_format *format, const unsigned char *bytes, size_t size);
 /* A PNG with a palette; its depth in *bits. */
 bool image_format_png_header(const unsigned char *bytes, size_t size, int *bits, bool *indexed);
 

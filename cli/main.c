@@ -27,11 +27,16 @@ static const char usage[] =
     "  recede COMMAND --help   the options of a command\n"
     "  recede --version        the version\n";
 
+/* The image library starts as many as it is told, and gains nothing from more. */
+#define MOST_CODEC_THREADS 64
+
 static int run(size_t index, int argc, char **argv) {
   options given;
   command_exit code = EXIT_USAGE;
-  if (options_parse(commands[index].command, argc, argv, &given))
+  if (options_parse(commands[index].command, argc, argv, &given)) {
+    image_codec_init(given.threads > MOST_CODEC_THREADS ? MOST_CODEC_THREADS : given.threads);
     code = commands[index].run(&given);
+  }
   options_clear(&given);
   return (int)code;
 }
@@ -45,9 +50,15 @@ int main(int argc, char **argv) {
     fputs(usage, stderr);
     return EXIT_USAGE;
   }
-  if (strcmp(argv[1], "--version") == 0) return printf("recede %s\n", RECEDE_VERSION) < 0;
-  if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0)
-    return fputs(usage, stdout) < 0;
+  if (strcmp(argv[1], "--version") == 0) {
+    printf("recede %s\n", RECEDE_VERSION);
+    return command_end_output();
+  }
+  if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
+      strcmp(argv[1], "help") == 0) {
+    fputs(usage, stdout);
+    return command_end_output();
+  }
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
     if (strcmp(argv[1], commands[i].name) == 0) return run(i, argc - 1, argv + 1);
   char text[200];

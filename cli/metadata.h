@@ -4,6 +4,10 @@
 
 #include "image_file.h"
 
+/* Reads file->metadata from file->bytes, and what it says of the picture into file->info. */
+image_status metadata_read(image_file *file, image_message *message);
+void metadata_free(image_file *file);
+
 /* Whether a picture in this format keeps its stored rows and its Exif orientation. */
 bool metadata_carries_orientation(const image_file *from, const image_format *format);
 

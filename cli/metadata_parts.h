@@ -10,16 +10,23 @@ typedef struct metadata_parts {
   GByteArray *exif;    /* an Exif block (a TIFF structure), its thumbnail blanked */
   GByteArray *xmp;     /* the packet */
   GByteArray *iptc;    /* Photoshop's 8BIM resources, without thumbnails */
-  GByteArray *chunks;  /* PNG: chunks to be copied as they are */
+  GByteArray *profile; /* WebP's, which the decoder does not give */
+  GByteArray *colours; /* PNG: chunks of profile and resolution, to be copied as they are */
+  GByteArray *texts;   /* PNG: texts that describe the picture, likewise */
   GByteArray *comment; /* JPEG: comment segments as they are */
   double dpi_x, dpi_y; /* 0: unknown */
+  bool lost;           /* there was more, which we cannot read */
 } metadata_parts;
 
 /* Take what they find; NULL parts stay NULL. The bytes come from a file that was read well. */
 void metadata_from_jpeg(const uint8_t *bytes, size_t size, metadata_parts *parts);
-/* texts: those too that describe the picture, not only its colours and resolution. */
-void metadata_from_png(const uint8_t *bytes, size_t size, bool texts, metadata_parts *parts);
+void metadata_from_png(const uint8_t *bytes, size_t size, metadata_parts *parts);
 void metadata_from_tiff(const uint8_t *bytes, size_t size, metadata_parts *parts);
+void metadata_from_webp(const uint8_t *bytes, size_t size, metadata_parts *parts);
+/* A block by what it begins with: Exif, XMP or 8BIM resources. The first of each kind stays. */
+void metadata_take(metadata_parts *parts, const uint8_t *bytes, size_t size);
+/* A text chunk of a PNG: "tEXt", "zTXt" or "iTXt". whole: from its length to its checksum. */
+void metadata_take_text(metadata_parts *parts, const uint8_t *whole, size_t whole_size);
 
 /* Return the encoded file with the parts put in. *lost is set where one does not fit. */
 GByteArray *metadata_into_jpeg(const uint8_t *bytes, size_t size, const metadata_parts *parts,
@@ -31,6 +38,8 @@ GByteArray *metadata_into_tiff(const uint8_t *bytes, size_t size, const metadata
 
 /* 8BIM resources without the thumbnails (1033, 1036), which would show what was removed. */
 GByteArray *metadata_clean_iptc(const uint8_t *bytes, size_t size);
+/* Takes pictures out of an XMP packet. false: they cannot be told from the rest. */
+bool metadata_clean_xmp(GByteArray *xmp);
 GByteArray *metadata_copy(const uint8_t *bytes, size_t size);
 
 #endif

@@ -2,7 +2,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "exif.h"
 #include "metadata_parts.h"
 
 #define SIGNATURE 8
@@ -29,21 +28,18 @@ static bool is_one_of(const chunk *found, const char *names) {
   return strstr(names, found->name) != NULL;
 }
 
-void metadata_from_png(const uint8_t *bytes, size_t size, bool texts, metadata_parts *parts) {
-  const char *taken =
-      texts ? "iCCP sRGB gAMA cHRM cICP pHYs tEXt zTXt iTXt" : "iCCP sRGB gAMA cHRM cICP pHYs";
+void metadata_from_png(const uint8_t *bytes, size_t size, metadata_parts *parts) {
   chunk found;
-  parts->chunks = g_byte_array_new();
+  parts->colours = g_byte_array_new();
+  parts->texts = g_byte_array_new();
+  /* Exif has a chunk of its own, which counts before a text that holds it. */
+  for (size_t at = SIGNATURE; next_chunk(bytes, size, &at, &found);)
+    if (strcmp(found.name, "eXIf") == 0) metadata_take(parts, found.data, found.size);
   for (size_t at = SIGNATURE; next_chunk(bytes, size, &at, &found);) {
-    if (strcmp(found.name, "eXIf") == 0) {
-      parts->exif = metadata_copy(found.data, found.size);
-      exif_blank_thumbnail(parts->exif->data, parts->exif->len);
-    } else if (strcmp(found.name, "iTXt") == 0 && found.size > sizeof XMP_HEAD &&
-               memcmp(found.data, XMP_HEAD, sizeof XMP_HEAD) == 0) {
-      parts->xmp = metadata_copy(found.data + sizeof XMP_HEAD, found.size - sizeof XMP_HEAD);
-    } else if (is_one_of(&found, taken)) {
-      g_byte_array_append(parts->chunks, found.whole, (guint)found.whole_size);
-    }
+    if (is_one_of(&found, "tEXt zTXt iTXt"))
+      metadata_take_text(parts, found.whole, found.whole_size);
+    else if (is_one_of(&found, "iCCP sRGB gAMA cHRM cICP pHYs"))
+      g_byte_array_append(parts->colours, found.whole, (guint)found.whole_size);
   }
 }
 
@@ -87,10 +83,11 @@ static void put_resolution(GByteArray *to, const metadata_parts *parts) {
 }
 
 static void put_parts(GByteArray *to, const metadata_parts *parts) {
-  if (parts->chunks)
-    g_byte_array_append(to, parts->chunks->data, parts->chunks->len);
+  if (parts->colours)
+    g_byte_array_append(to, parts->colours->data, parts->colours->len);
   else
     put_resolution(to, parts);
+  if (parts->texts) g_byte_array_append(to, parts->texts->data, parts->texts->len);
   if (parts->exif)
     put_chunk(to, "eXIf", (const uint8_t *)"", 0, parts->exif->data, parts->exif->len);
   if (parts->xmp)
@@ -112,7 +109,7 @@ GByteArray *metadata_into_png(const uint8_t *bytes, size_t size, const metadata_
       put = true;
     }
     if (is_one_of(&found,
-                  parts->chunks ? "IHDR PLTE tRNS IDAT IEND" : "IHDR PLTE tRNS IDAT IEND iCCP"))
+                  parts->colours ? "IHDR PLTE tRNS IDAT IEND" : "IHDR PLTE tRNS IDAT IEND iCCP"))
       g_byte_array_append(to, found.whole, (guint)found.whole_size);
   }
   return to;

@@ -32,6 +32,7 @@ void metadata_from_tiff(const uint8_t *bytes, size_t size, metadata_parts *parts
     exif_remove_structure(&tree);
     exif_remove(&tree, EXIF_MAIN, EXIF_TAG_XMP);
     exif_remove(&tree, EXIF_MAIN, EXIF_TAG_PHOTOSHOP);
+    exif_remove(&tree, EXIF_MAIN, EXIF_TAG_LAYERS); /* the old picture, as Photoshop's layers */
     parts->exif = metadata_copy(empty_structure, sizeof empty_structure);
     exif_append(&tree, NULL, parts->exif, 0);
   }
@@ -62,8 +63,10 @@ GByteArray *metadata_into_tiff(const uint8_t *bytes, size_t size, const metadata
   if (!has_exif) exif_read((const uint8_t *)"", 0, &more);
   exif_remove_structure(&more);
   exif_remove(&made, EXIF_MAIN, 306); /* the encoder's date is today's */
-  for (uint16_t tag = 282; tag <= 296; tag = tag == 283 ? 296 : (uint16_t)(tag + 1))
-    if (exif_find(&more, EXIF_MAIN, tag)) exif_remove(&made, EXIF_MAIN, tag);
+  static const uint16_t better[] = {EXIF_TAG_ORIENTATION, EXIF_TAG_X_RESOLUTION,
+                                    EXIF_TAG_Y_RESOLUTION, EXIF_TAG_RESOLUTION_UNIT};
+  for (size_t i = 0; i < G_N_ELEMENTS(better); i++)
+    if (exif_find(&more, EXIF_MAIN, better[i])) exif_remove(&made, EXIF_MAIN, better[i]);
   add(&made, EXIF_TAG_XMP, 1, parts->xmp);
   add(&made, EXIF_TAG_PHOTOSHOP, 1, parts->iptc);
   exif_append(&made, &more, to, 0);

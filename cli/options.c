@@ -25,11 +25,12 @@ static gboolean refuse(GError **error, const char *format, ...) {
   return FALSE;
 }
 
-static gboolean set_param(options *given, const char *key, const char *value, GError **error) {
+static gboolean set_param(options *given, const char *start, const char *key, const char *value,
+                          GError **error) {
   char message[400];
   if (recede_params_set(&given->params, key, value, message, sizeof message) == RECEDE_OK)
     return TRUE;
-  return refuse(error, "--%s", message);
+  return refuse(error, "%s%s", start, message);
 }
 
 static gboolean on_param(const char *name, const char *value, gpointer data, GError **error) {
@@ -39,7 +40,7 @@ static gboolean on_param(const char *name, const char *value, gpointer data, GEr
   if (strcmp(key, "tilt") == 0) given->tilt_given = true;
   if (strcmp(key, "horizon") == 0) given->horizon_given = true;
   if (strcmp(key, "quad") == 0) given->quad_given = true;
-  return set_param(given, key, value ? value : "1", error);
+  return set_param(given, "--", key, value ? value : "1", error);
 }
 
 static gboolean on_set(const char *name, const char *value, gpointer data, GError **error) {
@@ -47,7 +48,7 @@ static gboolean on_set(const char *name, const char *value, gpointer data, GErro
   (void)name;
   if (!equals) return refuse(error, "--set: '%s' is not KEY=VALUE", value);
   char *key = g_strndup(value, (gsize)(equals - value));
-  gboolean good = set_param(((parse *)data)->given, key, equals + 1, error);
+  gboolean good = set_param(((parse *)data)->given, "--set: ", key, equals + 1, error);
   g_free(key);
   return good;
 }

@@ -46,7 +46,7 @@ static command_exit run(orient *this) {
 }
 
 /* For people; scripts use --json. */
-static void say(const orient *this) {
+static command_exit say(const orient *this) {
   const recede_orientation *found = &this->report.orientation;
   printf("slant %.1f°, tilt %.1f°, field of view %.0f°\n", found->slant_deg, found->tilt_deg,
          found->fov_deg);
@@ -54,6 +54,7 @@ static void say(const orient *this) {
     printf("horizon %.0f,%.0f,%.0f,%.0f\n", found->horizon[0], found->horizon[1], found->horizon[2],
            found->horizon[3]);
   printf("confidence %.2f\n", found->confidence);
+  return command_end_output();
 }
 
 command_exit command_orient(options *given) {
@@ -62,7 +63,7 @@ command_exit command_orient(options *given) {
   if (code == EXIT_DONE) code = read_inputs(&this);
   if (code == EXIT_DONE) code = run(&this);
   bool json_to_stdout = given->json && strcmp(given->json, "-") == 0;
-  if (code == EXIT_DONE && !json_to_stdout && !given->quiet) say(&this);
+  if (code == EXIT_DONE && !json_to_stdout && !given->quiet) code = say(&this);
   if (code == EXIT_DONE) code = command_report(given, &this.report, NULL);
   if (this.job) recede_job_free(&this.job);
   free(this.mask.data);

@@ -113,9 +113,10 @@ void pixels_convert(const recede_view *from, const recede_view *to) {
       }
 }
 
-bool pixels_to_mask(const recede_view *from, const recede_view *to, int *bad_x, int *bad_y) {
+bool pixels_to_mask(const recede_view *from, bool premultiplied, const recede_view *to, int *bad_x,
+                    int *bad_y) {
   static const float rec709[3] = {.2126f, .7152f, .0722f};
-  int alpha = alpha_of(from);
+  int alpha = premultiplied ? -1 : alpha_of(from);
   for (int y = 0; y < to->height; y++)
     for (int x = 0; x < to->width; x++) {
       float value = pixels_get(from, x, y, 0);

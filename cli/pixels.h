@@ -26,9 +26,10 @@ bool pixels_opaque(const recede_view *view);
 /* Copies into another type and number of channels: gray spreads to RGB, alpha is dropped or 1. From
  * RGB to gray there is no way here. */
 void pixels_convert(const recede_view *from, const recede_view *to);
-/* A mask of one channel from a picture: its luminance times its alpha. false: *bad_x, *bad_y is not
- * finite. */
-bool pixels_to_mask(const recede_view *from, const recede_view *to, int *bad_x, int *bad_y);
+/* A mask of one channel from a picture: its luminance times its alpha, which
+ * premultiplied colours hold already. false: *bad_x, *bad_y is not finite. */
+bool pixels_to_mask(const recede_view *from, bool premultiplied, const recede_view *to, int *bad_x,
+                    int *bad_y);
 
 /* Colours divided by alpha and multiplied again; fully transparent and opaque pixels are left. */
 void pixels_unpremultiply(const recede_view *view);

@@ -59,7 +59,11 @@ static void folder_of(const char *path, char folder[PATH_MAX]) {
 bool safe_file_check(const char *path, bool overwrite, char *message, size_t size) {
   char target[PATH_MAX], folder[PATH_MAX];
   struct stat status;
-  if (!resolve(path, target)) return refuse(message, size, errno, "");
+  if (!resolve(path, target)) {
+    if (errno != ENOENT) return refuse(message, size, errno, "");
+    snprintf(message, size, "it is a link to a file that is not there; remove it first");
+    return false;
+  }
   if (stat(target, &status) == 0) {
     if (S_ISDIR(status.st_mode)) return refuse(message, size, EISDIR, "");
     if (!S_ISREG(status.st_mode)) {
@@ -74,6 +78,27 @@ bool safe_file_check(const char *path, bool overwrite, char *message, size_t siz
   if (access(folder, W_OK | X_OK) != 0)
     return refuse(message, size, errno, errno == ENOENT ? "" : "its folder");
   return true;
+}
+
+static bool same_inode(const struct stat *a, const struct stat *b) {
+  return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
+static const char *last_name(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash ? slash + 1 : path;
+}
+
+bool safe_file_same(const char *a, const char *b) {
+  char folder_a[PATH_MAX], folder_b[PATH_MAX];
+  struct stat status_a, status_b;
+  bool there_a = stat(a, &status_a) == 0, there_b = stat(b, &status_b) == 0;
+  if (there_a || there_b) return there_a && there_b && same_inode(&status_a, &status_b);
+  if (strlen(a) >= PATH_MAX || strlen(b) >= PATH_MAX) return false; /* it will not be written */
+  folder_of(a, folder_a);
+  folder_of(b, folder_b);
+  return stat(folder_a, &status_a) == 0 && stat(folder_b, &status_b) == 0 &&
+         same_inode(&status_a, &status_b) && strcmp(last_name(a), last_name(b)) == 0;
 }
 
 /* 666 less the umask, which can only be read by setting it. */

@@ -15,6 +15,9 @@
 /* Whether path could be written, asked before hours of work. false: why not, in message. */
 bool safe_file_check(const char *path, bool overwrite, char *message, size_t message_size);
 
+/* Whether two names lead to one file, be it there already or not. */
+bool safe_file_same(const char *a, const char *b);
+
 /* Without overwrite a file that exists stays, even one that appeared in the meantime. A file that
  * is replaced hands down its permissions; a symbolic link stays and its target is replaced. false:
  * nothing changed, the reason is in message. */

@@ -22,18 +22,30 @@ static command_exit no_memory(void) {
   return EXIT_LIMIT;
 }
 
+/* Whether the output is the values themselves, not a picture of them. HDR's three channels share an
+ * exponent: it is for colours. */
+static bool holds_values(const char *output) {
+  const image_format *format = image_format_of_name(output);
+  return format && image_format_holds(format, RECEDE_FLOAT) && strcmp(format->codec, "hdr") != 0;
+}
+
 static command_exit check_format(const scale_map *this) {
-  const image_format *format = image_format_of_name(this->given->output);
-  if (format) return EXIT_DONE;
   image_message message;
-  image_file_can_write(this->given->output, NULL, RECEDE_U8, &message);
-  return command_refuse_image(this->given->output, IMAGE_OUTPUT, &message);
+  const options *given = this->given;
+  const recede_view *view = &this->file.view;
+  int width = given->input ? view->width : given->width;
+  int height = given->input ? view->height : given->height;
+  recede_type type = holds_values(given->output) ? RECEDE_FLOAT : RECEDE_U8;
+  if (image_file_can_write(given->output, NULL, width, height, type, &message)) return EXIT_DONE;
+  return command_refuse_image(given->output, IMAGE_OUTPUT, &message);
 }
 
 /* The pixels are only needed where the orientation is read from them. */
 static command_exit read_input(scale_map *this) {
   options *given = this->given;
   if (!given->input) {
+    command_exit format = check_format(this);
+    if (format != EXIT_DONE) return format;
     uint64_t bytes = pixels_bytes(given->width, given->height, 1, RECEDE_FLOAT);
     uint64_t limit = given->memory_bytes ? given->memory_bytes : (uint64_t)1 << 30;
     if (bytes > limit) {
@@ -48,6 +60,7 @@ static command_exit read_input(scale_map *this) {
     return this->picture.data ? EXIT_DONE : no_memory();
   }
   command_exit code = command_open(given->input, given, &this->file);
+  if (code == EXIT_DONE) code = check_format(this);
   if (code == EXIT_DONE) code = command_read(&this->file);
   this->picture = this->file.view;
   return code;
@@ -151,9 +164,7 @@ static void paint(const scale_map *this, recede_view *picture) {
 }
 
 static command_exit write_map(scale_map *this) {
-  const image_format *format = image_format_of_name(this->given->output);
-  bool values = image_format_holds(format, RECEDE_FLOAT) && strcmp(format->codec, "hdr") != 0;
-  if (values) return command_write(this->given, &this->map, NULL, false);
+  if (holds_values(this->given->output)) return command_write(this->given, &this->map, NULL, false);
   recede_view picture = pixels_new(this->map.width, this->map.height, 3, RECEDE_U8);
   if (!picture.data) return no_memory();
   paint(this, &picture);
@@ -173,7 +184,6 @@ static command_exit write_map(scale_map *this) {
 command_exit command_scale_map(options *given) {
   scale_map this = {.given = given};
   command_exit code = command_check_outputs(given);
-  if (code == EXIT_DONE) code = check_format(&this);
   if (code == EXIT_DONE) code = read_input(&this);
   if (code == EXIT_DONE) code = find_plane(&this);
   if (code == EXIT_DONE) code = make_map(&this);

@@ -13,10 +13,11 @@ typedef struct synthesis {
 
 static command_exit check_format(const synthesis *this) {
   image_message message;
-  bool good =
-      image_file_can_write(this->given->output, &this->file, this->file.info.type, &message);
-  if (!good) return command_refuse_image(this->given->output, IMAGE_OUTPUT, &message);
-  command_warn(this->given, this->given->output, message.text);
+  const options *given = this->given;
+  bool good = image_file_can_write(given->output, &this->file, given->width, given->height,
+                                   this->file.info.type, &message);
+  if (!good) return command_refuse_image(given->output, IMAGE_OUTPUT, &message);
+  command_warn(given, given->output, message.text);
   return EXIT_DONE;
 }
 

@@ -52,6 +52,8 @@ def test_usage_errors_are_2(folder):
     for more in wrong[::3 if harness.SANITIZED else 1]:
         done = recede("fill", *good, *more, code=2)
         check(done.stderr.startswith(b"recede: "), more, done.stderr)
+    done = recede("fill", *good, "--set", "none=1", code=2)
+    check(done.stderr.startswith(b"recede: --set: there is no parameter 'none'"), done.stderr)
     recede("fill", image, "-o", folder / "out.png", code=2)
     recede("fill", image, "--mask", mask, code=2)
     recede("fill", "--mask", mask, "-o", folder / "out.png", code=2)
@@ -98,6 +100,27 @@ def test_limits_are_5(folder):
     check(not (folder / "out.png").exists())
 
 
+def test_sides_that_a_format_cannot_have(folder):
+    """Said before the work, with 4, the limit and the size."""
+    image = write(folder / "in.png", texture())
+    for suffix, limit, side in (("jpg", 65500, 65501), ("tga", 65535, 65536),
+                                ("png", 1000000, 1000001)):
+        for size in (f"{side}x2", f"2x{side}"):
+            out = folder / f"out.{suffix}"
+            # Too little memory for the work: it is not reached.
+            for command in (["synthesize", image, "--memory", "1"], ["scale-map"]):
+                done = recede(*command, "--size", size, "--frontal", "-o", out, code=4)
+                check(str(limit).encode() in done.stderr and str(side).encode() in done.stderr,
+                      done.stderr)
+                check(not out.exists() and done.stderr.startswith(b"recede: "))
+    recede("scale-map", "--size", "65500x1", "--frontal", "-o", folder / "out.jpg")
+    long = folder / "long.ppm"
+    long.write_bytes(b"P5\n66000 2\n255\n" + bytes(range(250)) * 528)
+    mask = folder / "mask.pgm"
+    mask.write_bytes(b"P5\n66000 2\n255\n" + bytes(30000) + b"\xff" * 9 + bytes(101991))
+    recede("fill", long, "--mask", mask, "--frontal", "-o", folder / "out2.jpg", code=4)
+
+
 def test_every_option_is_taken(folder):
     image, mask = pair(folder)
     source = write(folder / "source.png", np.full((48, 64), 255, np.uint8))
@@ -138,6 +161,21 @@ def test_report_to_a_file(folder):
     fill(folder, "--frontal", "--json", to, out="two.png", code=4)
     check(not (folder / "two.png").exists(), "filled although the report could not be written")
     fill(folder, "--frontal", "--json", to, "--force", out="two.png")
+
+
+def test_the_report_replaces_no_picture(folder):
+    image, mask = pair(folder)
+    source = write(folder / "source.png", np.full((48, 64), 255, np.uint8))
+    (folder / "link.png").symlink_to("in.png")
+    os.link(mask, folder / "second-name.png")
+    before = {path: path.read_bytes() for path in folder.iterdir()}
+    for name in ("out.png", "in.png", "mask.png", "source.png", "./out.png", "link.png",
+                 "second-name.png", f"../{folder.name}/out.png", f"../{folder.name}/in.png"):
+        done = recede("fill", image, "--mask", mask, "--source", source, "-o", folder / "out.png",
+                      "--frontal", "--force", "--json", f"{folder}/{name}", code=2)
+        check(b"--json names the same file" in done.stderr, name, done.stderr)
+    recede("orient", image, "--slant", "9", "--json", image, "--force", code=2)
+    check({path: path.read_bytes() for path in folder.iterdir()} == before, "a file changed")
 
 
 def test_seed_holds_the_hash(folder):

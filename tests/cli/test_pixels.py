@@ -3,6 +3,7 @@ turn, values that are no numbers."""
 import struct
 import subprocess
 import sys
+import zlib
 
 import numpy as np
 
@@ -94,6 +95,9 @@ def test_values_that_are_no_numbers(folder):
                            "--frontal", "-o", out)
         after = read(out)
         check(report["nonfinite_pixels"] >= 3, report["nonfinite_pixels"])
+        said = recede("fill", image, "--mask", folder / "mask.png", "--frontal", "-o", out,
+                      "--force").stderr
+        check(f"{report['nonfinite_pixels']} px are no numbers".encode() in said, said)
         check(np.isfinite(after[hole() > 0]).all(), "the fill is not finite")
         check(same_bits(outside(read(image), hole()), outside(after, hole())))
 
@@ -131,13 +135,22 @@ def test_premultiplied_colours(folder):
     check((after[hole() > 0][:, 3] == 1).all(), "the fill is not opaque")
 
 
-def write_tiff(path, rgba, extra_samples):
-    """cv2 cannot say what its alpha means: the plainest TIFF of float RGBA, by hand."""
+def write_tiff(path, rgba, extra_samples, big=False):
+    """cv2 cannot say what its alpha means: the plainest TIFF of float RGBA, by hand; or BigTIFF."""
     height, width = rgba.shape[:2]
     data = rgba[:, :, [2, 1, 0, 3]].astype("<f4").tobytes()
     tags = [(256, 3, 1, width), (257, 3, 1, height), (258, 3, 4, 8), (259, 3, 1, 1),
             (262, 3, 1, 2), (273, 4, 1, 24), (277, 3, 1, 4), (278, 3, 1, height),
             (279, 4, 1, len(data)), (284, 3, 1, 1), (338, 3, 1, extra_samples), (339, 3, 4, 16)]
+    if big:
+        values = {258: 0x20002000200020, 339: 0x3000300030003, 273: 16}
+        tags = [(tag, kind, count, values.get(tag, value)) for tag, kind, count, value in tags]
+        tags.append((315, 2, 4, int.from_bytes(b"Ann", "little")))
+        tags.sort()
+        folder = struct.pack("<Q", len(tags)) + b"".join(struct.pack("<HHQQ", *t) for t in tags)
+        head = b"II+\0" + struct.pack("<HHQ", 8, 0, 16 + len(data))
+        path.write_bytes(head + data + folder + bytes(8))
+        return path
     folder = struct.pack("<H", len(tags)) + b"".join(struct.pack("<HHII", *tag) for tag in tags)
     head = b"II*\0" + struct.pack("<I8H", 24 + len(data), 32, 32, 32, 32, 3, 3, 3, 3)
     path.write_bytes(head + data + folder + bytes(4))
@@ -149,14 +162,16 @@ def test_alpha_keeps_its_kind(folder):
     pixels = texture(channels=4, kind="float").clip(.05, 1)
     pixels[:, 44:, 3] = .5
     write(folder / "mask.png", hole())
-    for name, extra_samples in (("Unassociated", 2), ("Associated", 1)):
-        image = write_tiff(folder / f"{name}.tif", pixels, extra_samples)
+    for name, extra_samples, big in (("Unassociated", 2, False), ("Associated", 1, False),
+                                     ("Unassociated", 2, True), ("Associated", 1, True)):
+        image = write_tiff(folder / f"{name}.tif", pixels, extra_samples, big)
         for suffix in ("tif", "exr"):
             recede("fill", image, "--mask", folder / "mask.png", "--frontal", "-q", "-o",
-                   folder / f"{name}-out.{suffix}")
-        said = subprocess.run(["exiftool", "-s3", "-ExtraSamples", str(folder / f"{name}-out.tif")],
+                   folder / f"{name}-out.{suffix}", "--force")
+        said = subprocess.run(["exiftool", "-s3", "-ExtraSamples", "-Artist",
+                               str(folder / f"{name}-out.tif")],
                               capture_output=True, check=True, text=True).stdout
-        check(said.startswith(name), name, "became", said)
+        check(said.startswith(name) and ("Ann" in said) == big, name, big, "became", said)
         expected = pixels.copy()
         if name == "Unassociated":
             expected[:, :, :3] *= expected[:, :, 3:]
@@ -223,6 +238,9 @@ def test_few_bits_are_expanded(folder):
                     f"png:bit-depth={bits}", "-define", "png:color-type=0", image)
         recede("fill", image, "--mask", write(folder / "mask.png", hole()), "--frontal", "-q", "-o",
                folder / f"out{bits}.png")
+        said = recede("fill", image, "--mask", folder / "mask.png", "--frontal", "-o",
+                      folder / f"said{bits}.png").stderr
+        check(f"{bits}-bit samples".encode() in said, said)
         before, after = read(image), read(folder / f"out{bits}.png")
         check(np.array_equal(outside(before, hole()), outside(after, hole())), bits)
     run_convert(folder / "plain.png", "-colors", "16", "-type", "Palette",
@@ -232,6 +250,25 @@ def test_few_bits_are_expanded(folder):
     check(b"palette" in done.stderr, done.stderr)
     check(same_bits(outside(read(folder / "indexed.png"), hole()),
                     outside(read(folder / "out-indexed.png"), hole())))
+
+
+def test_several_pictures_in_a_file(folder):
+    """The first is used, and the loss of the others said."""
+    write(folder / "a.png", texture())
+    write(folder / "b.png", texture()[::-1])
+    run_convert(folder / "a.png", folder / "b.png", folder / "in.tif")
+    run_convert("-delay", 10, folder / "a.png", folder / "b.png", "-define", "webp:lossless=true",
+                folder / "in.webp")
+    plain = (folder / "a.png").read_bytes()
+    control = b"acTL" + struct.pack(">II", 1, 0)
+    chunk = struct.pack(">I", 8) + control + struct.pack(">I", zlib.crc32(control))
+    (folder / "in.png").write_bytes(plain[:33] + chunk + plain[33:])
+    for suffix in ("tif", "webp", "png"):
+        done = recede("fill", folder / f"in.{suffix}", "--mask", write(folder / "mask.png", hole()),
+                      "--frontal", "--force", "-o", folder / "out.png")
+        check(b"several pictures" in done.stderr, suffix, done.stderr)
+        check(same_bits(outside(texture(), hole()), outside(read(folder / "out.png")[:, :, :3],
+                                                           hole())), suffix)
 
 
 def test_what_cannot_be_kept_is_refused_by_name(folder):
@@ -253,7 +290,8 @@ def test_what_the_output_cannot_hold(folder):
     mask = write(folder / "mask.png", hole())
     images = {"u8": write(folder / "u8.png", texture()),
               "u16": write(folder / "u16.png", texture(kind="u16")),
-              "float": write(folder / "float.exr", texture(kind="float"))}
+              "float": write(folder / "float.exr", texture(kind="float")),
+              "half": write(folder / "half.exr", texture(kind="half"), half=True)}
     glass = texture(channels=4)
     glass[:, :9, 3] = 100
     images["glass"] = write(folder / "glass.png", glass)
@@ -267,10 +305,20 @@ def test_what_the_output_cannot_hold(folder):
     check(b".png or .tif" in fill("u8", "exr", 4))
     check(b"transparency" in fill("glass", "jpg", 4))
     check(b"reduced to 8" in fill("u16", "jpg", 0))
+    check(b"32 bits" in fill("half", "tif", 0) and fill("half", "exr", 0) == b"")
     fill("rgba", "jpg", 0)
     check(read(folder / "out.jpg").shape == (48, 64, 3))
+    check(b"use .png" in fill("u8", "webp", 4))
     fill("u8", "xyz", 4)
     fill("u8", "", 4)
+
+
+def test_webp_is_read(folder):
+    image = folder / "in.webp"
+    check(harness.cv2.imwrite(str(image), texture(), [harness.cv2.IMWRITE_WEBP_QUALITY, 101]))
+    recede("fill", image, "--mask", write(folder / "mask.png", hole()), "--frontal", "-q", "-o",
+           folder / "out.png")
+    check(same_bits(outside(read(image), hole()), outside(read(folder / "out.png"), hole())))
 
 
 def test_the_suffix_of_an_input_may_lie(folder):

@@ -80,6 +80,20 @@ def test_formats(folder):
     check(red[0] and not red[-1], "the sky is not marked")
 
 
+def test_says_nothing_when_quiet(folder):
+    for suffix in ("exr", "tif", "png"):
+        done = recede("scale-map", "--size", "40x30", "--slant", "60", "-q", "-o",
+                      folder / f"m.{suffix}")
+        check(done.stdout == b"" and done.stderr == b"", suffix, done.stdout, done.stderr)
+
+
+def test_what_holds_no_map(folder):
+    for suffix in ("webp", "hdr", "xyz"):
+        done = recede("scale-map", "--size", "40x30", "--slant", "60", "-o", folder / f"m.{suffix}",
+                      code=4)
+        check(b".png" in done.stderr, done.stderr)
+
+
 def test_of_a_picture(folder):
     image = write(folder / "in.png", texture())
     recede("scale-map", image, "--horizon", "0,-30,63,-30", "-o", folder / "a.exr")

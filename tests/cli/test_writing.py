@@ -80,6 +80,12 @@ def test_links_and_permissions_stay(folder):
     check((folder / "new.png").stat().st_mode & 0o777 == 0o640)
 
 
+def test_a_link_to_nothing(folder):
+    (folder / "link.png").symlink_to("none.png")
+    said = recede(*job(folder), "-o", folder / "link.png", "--force", code=4).stderr
+    check(b"link" in said and b"folder" not in said, said)
+
+
 def check_failed_write(code, out, before):
     """A write that failed ends with 4; a file that was there stays, none appears that was not."""
     check(code == 4, out.name, "ended with", code)
@@ -235,7 +241,11 @@ def test_standard_output_full(folder):
         run = subprocess.run([harness.RECEDE, *map(str, job(folder)), "-o", folder / "out.png",
                               "--json", "-"], stdout=full, stderr=subprocess.PIPE, check=False,
                              timeout=60)
-    check(run.returncode == 4, run)
+        check(run.returncode == 4, run)
+        for words in (["orient", folder / "in.png", "--slant", "9"], ["--version"], ["--help"]):
+            run = subprocess.run([harness.RECEDE, *map(str, words)], stdout=full,
+                                 stderr=subprocess.PIPE, check=False, timeout=60)
+            check(run.returncode == 4 and b"standard output" in run.stderr, words, run)
 
 
 if __name__ == "__main__":
