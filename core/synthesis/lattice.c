@@ -3,8 +3,8 @@
 #include "base/real.h"
 #include "synthesis/rails.h"
 
-/* Two copies may be off by twice that to each other, a joint's width. By .12 drawn tiles that bend
- * have double joints, by .08 one picture in six. */
+/* Two copies may be off by twice that to each other, a joint's width: by .12 drawn tiles that bend
+ * have double joints, by .08 some. */
 #define TOLERANCE .04f
 /* In units of the texture's variance, per square of the cycles by which a copy is off by more: a
  * copy whose tiles lean in another way is followed until it is. By 6 rows break, 96 is as 24. */
