@@ -27,6 +27,10 @@ const char *rp_target_refusal(const rp_target *target, gboolean writes, gboolean
   return NULL;
 }
 
+const char *rp_layer_gone(void) {
+  return _("The layer is gone: it was deleted, or its image was closed. There is nothing to fill.");
+}
+
 const char *rp_no_selection(void) {
   return _("Nothing is selected. Select what is to be filled, for instance with the free select "
            "tool, and start again.");

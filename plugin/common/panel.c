@@ -9,6 +9,7 @@
 #include "intl.h"
 #include "preview.h"
 #include "procedure.h"
+#include "watch.h"
 
 #define PROXY_LONGEST_PX 720
 #define DRAFT_AFTER_MS 250 /* after the last change */
@@ -22,16 +23,15 @@ struct rp_panel {
   gpointer user;
   rp_scene scene;
   rp_background estimate, draft;
-  rp_worker *worker; /* of the run that OK asked for */
+  rp_watch watch; /* of the run that OK asks for */
   guchar *draft_pixels;
   guint draft_timer;
-  gboolean setting;   /* the panel itself is moving the controls */
-  gboolean cancelled; /* of the run */
-  GtkWidget *box, *area, *row, *shows[SHOWS], *estimate_button, *status, *progress;
+  gboolean setting; /* the panel itself is moving the controls */
+  GtkWidget *box, *area, *row, *controls, *shows[SHOWS], *estimate_button;
 };
 
 static void say(rp_panel *panel, const char *text) {
-  gtk_label_set_text(GTK_LABEL(panel->status), text);
+  gtk_label_set_text(GTK_LABEL(panel->watch.status), text);
 }
 
 /* What the user sees and can do with it. */
@@ -225,6 +225,42 @@ void rp_panel_changed(rp_panel *panel, const char *key) {
   show_plane(panel);
 }
 
+/* The scene is new. */
+static void show_picture(rp_panel *panel) {
+  explain(panel);
+  if (panel->settings->procedure == RP_FILL)
+    take_source(panel);
+  else
+    rp_scene_make_exemplar(&panel->scene);
+  show_plane(panel);
+  if (choice(panel, "orientation") == RECEDE_ORIENTATION_AUTO) start_estimate(panel);
+}
+
+/* The user works on while the dialog is open: selects something else, moves or crops the layer. Why
+ * it cannot be filled now; NULL: it can. */
+static const char *read_anew(rp_panel *panel) {
+  rp_procedure procedure = panel->settings->procedure;
+  rp_picture picture;
+  rp_scene scene;
+  if (rp_is_as_read(panel->host, procedure, panel->picture)) return NULL;
+  const char *text = rp_read(panel->host, procedure, &picture);
+  if (text) return text;
+  if (!rp_scene_new(&picture, PROXY_LONGEST_PX, &scene)) {
+    rp_picture_clear(&picture);
+    return rp_no_memory();
+  }
+  stop_draft(panel);
+  rp_background_stop(&panel->estimate);
+  rp_picture_clear(panel->picture);
+  *panel->picture = picture;
+  scene.show = panel->scene.show;
+  rp_scene_clear(&panel->scene);
+  panel->scene = scene;
+  g_clear_pointer(&panel->draft_pixels, g_free);
+  show_picture(panel);
+  return NULL;
+}
+
 static void on_show(GtkToggleButton *button, gpointer user) {
   rp_panel *panel = user;
   if (!gtk_toggle_button_get_active(button)) return;
@@ -258,10 +294,10 @@ static GtkWidget *show_row(rp_panel *panel) {
 
 /* Two lines are kept free for it, so that nothing jumps. */
 static GtkWidget *status_line(rp_panel *panel) {
-  panel->status = rp_ui_paragraph();
-  gtk_widget_set_size_request(panel->status, 480, 40);
-  atk_object_set_name(gtk_widget_get_accessible(panel->status), _("Status"));
-  return panel->status;
+  panel->watch.status = rp_ui_paragraph();
+  gtk_widget_set_size_request(panel->watch.status, 480, 40);
+  atk_object_set_name(gtk_widget_get_accessible(panel->watch.status), _("Status"));
+  return panel->watch.status;
 }
 
 static void build(rp_panel *panel) {
@@ -271,8 +307,8 @@ static void build(rp_panel *panel) {
   panel->row = show_row(panel);
   gtk_box_pack_start(GTK_BOX(panel->box), panel->row, FALSE, FALSE, 0);
   gtk_box_pack_start(GTK_BOX(panel->box), status_line(panel), FALSE, FALSE, 0);
-  panel->progress = gtk_progress_bar_new();
-  gtk_box_pack_start(GTK_BOX(panel->box), panel->progress, FALSE, FALSE, 0);
+  panel->watch.progress = gtk_progress_bar_new();
+  gtk_box_pack_start(GTK_BOX(panel->box), panel->watch.progress, FALSE, FALSE, 0);
   gtk_widget_show_all(panel->box);
 }
 
@@ -288,17 +324,28 @@ rp_panel *rp_panel_new(rp_host *host, rp_settings *settings, rp_picture *picture
     return NULL;
   }
   build(panel);
-  if (settings->procedure == RP_FILL)
-    take_source(panel);
-  else
-    rp_scene_make_exemplar(&panel->scene);
-  show_plane(panel);
-  explain(panel);
-  if (choice(panel, "orientation") == RECEDE_ORIENTATION_AUTO) start_estimate(panel);
+  show_picture(panel);
   return panel;
 }
 
 GtkWidget *rp_panel_widget(rp_panel *panel) { return panel->box; }
+
+/* Back from the image's window. */
+static gboolean on_focus(GtkWidget *dialog, GdkEvent *event, gpointer user) {
+  rp_panel *panel = user;
+  (void)dialog, (void)event;
+  if (panel->watch.worker) return FALSE;
+  const char *text = rp_refusal(panel->host, panel->settings, FALSE);
+  if (!text) text = read_anew(panel);
+  if (text) say(panel, text);
+  return FALSE;
+}
+
+void rp_panel_attach(rp_panel *panel, GtkWidget *dialog, GtkWidget *controls) {
+  panel->watch.dialog = dialog;
+  panel->controls = controls;
+  g_signal_connect(dialog, "focus-in-event", G_CALLBACK(on_focus), panel);
+}
 
 void rp_panel_free(rp_panel *panel) {
   stop_draft(panel);
@@ -310,70 +357,28 @@ void rp_panel_free(rp_panel *panel) {
 
 /* -------------------------------------------------------------------------------------- run -- */
 
-static gboolean show_state(gpointer user) {
-  rp_panel *panel = user;
-  rp_state state = rp_worker_state(panel->worker);
-  const char *label = rp_stage_label(state.stage);
-  if (strcmp(label, gtk_label_get_text(GTK_LABEL(panel->status))) != 0) say(panel, label);
-  gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(panel->progress), CLAMP(state.fraction, 0, 1));
-  return G_SOURCE_CONTINUE;
-}
-
-/* The dialog lives on meanwhile. */
-static void run_with_dialog(rp_request *request, gpointer user) {
-  rp_panel *panel = user;
-  panel->worker = rp_worker_start(request);
-  show_state(panel);
-  guint ticks = g_timeout_add(RP_TELL_EVERY_MS, show_state, panel);
-  while (!rp_worker_state(panel->worker).finished) {
-    gtk_main_iteration(); /* waits for the next tick at the longest */
-    if (panel->cancelled) rp_worker_cancel(panel->worker);
-  }
-  g_source_remove(ticks);
-  rp_worker_finish(&panel->worker);
-}
-
-static void on_response(GtkDialog *dialog, gint response, gpointer user) {
-  (void)dialog;
-  if (response == GTK_RESPONSE_CANCEL || response == GTK_RESPONSE_DELETE_EVENT)
-    ((rp_panel *)user)->cancelled = TRUE;
-}
-
-static gboolean keep_open(GtkWidget *dialog, GdkEvent *event, gpointer user) {
-  (void)dialog, (void)event;
-  ((rp_panel *)user)->cancelled = TRUE;
-  return TRUE;
-}
-
-static rp_outcome run(rp_panel *panel, GtkWidget *dialog, rp_request *request, char **message) {
-  gulong response = g_signal_connect(dialog, "response", G_CALLBACK(on_response), panel);
-  gulong closing = g_signal_connect(dialog, "delete-event", G_CALLBACK(keep_open), panel);
-  panel->cancelled = FALSE;
-  rp_outcome outcome = rp_compute(panel->host, panel->settings, panel->picture, request,
-                                  run_with_dialog, panel, message);
-  g_signal_handler_disconnect(dialog, response);
-  g_signal_handler_disconnect(dialog, closing);
-  return outcome;
-}
-
-static void set_sensitive(rp_panel *panel, GtkWidget *dialog, GtkWidget *controls,
-                          gboolean sensitive) {
+static void set_sensitive(rp_panel *panel, gboolean sensitive) {
   gtk_widget_set_sensitive(panel->area, sensitive);
   gtk_widget_set_sensitive(panel->row, sensitive);
-  gtk_widget_set_sensitive(controls, sensitive);
-  gtk_dialog_set_response_sensitive(GTK_DIALOG(dialog), GTK_RESPONSE_OK, sensitive);
+  gtk_widget_set_sensitive(panel->controls, sensitive);
+  gtk_dialog_set_response_sensitive(GTK_DIALOG(panel->watch.dialog), GTK_RESPONSE_OK, sensitive);
 }
 
-gboolean rp_panel_compute(rp_panel *panel, GtkWidget *dialog, GtkWidget *controls,
-                          rp_request *request) {
+gboolean rp_panel_compute(rp_panel *panel, rp_request *request) {
   char *message = NULL;
+  const char *text = rp_refusal(panel->host, panel->settings, TRUE);
+  if (!text) text = read_anew(panel);
+  if (text) {
+    say(panel, text);
+    return FALSE;
+  }
   stop_draft(panel);
   rp_background_stop(&panel->estimate);
   gtk_widget_set_sensitive(panel->estimate_button, TRUE);
-  set_sensitive(panel, dialog, controls, FALSE);
-  rp_outcome outcome = run(panel, dialog, request, &message);
-  gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(panel->progress), 0);
-  set_sensitive(panel, dialog, controls, TRUE);
+  set_sensitive(panel, FALSE);
+  rp_outcome outcome = rp_compute(panel->host, panel->settings, panel->picture, request,
+                                  rp_watch_run, &panel->watch, &message);
+  set_sensitive(panel, TRUE);
   if (outcome == RP_CANCELLED) say(panel, _("Stopped; the picture has not been changed."));
   if (message) say(panel, message);
   g_free(message);

@@ -194,14 +194,14 @@ static void reset(dialog *d) {
   show_settings(d, &defaults);
 }
 
-static gboolean ask(dialog *d, GtkWidget *controls, rp_request *request) {
+static gboolean ask(dialog *d, rp_request *request) {
   for (;;) {
     gint response = gimp_dialog_run(GIMP_DIALOG(d->dialog));
     if (response == RESPONSE_RESET)
       reset(d);
     else if (response != GTK_RESPONSE_OK)
       return FALSE;
-    else if (rp_panel_compute(d->panel, d->dialog, controls, request))
+    else if (rp_panel_compute(d->panel, request))
       return TRUE;
   }
 }
@@ -225,8 +225,9 @@ gboolean rp_host_dialog(rp_host *host, rp_settings *settings, rp_picture *pictur
   gtk_box_pack_start(GTK_BOX(gtk_dialog_get_content_area(GTK_DIALOG(d.dialog))), row, TRUE, TRUE,
                      0);
   gtk_widget_show(row);
+  rp_panel_attach(d.panel, d.dialog, controls);
   gtk_widget_show(d.dialog);
-  gboolean done = ask(&d, controls, request);
+  gboolean done = ask(&d, request);
   rp_panel_free(d.panel);
   gtk_widget_destroy(d.dialog);
   return done;

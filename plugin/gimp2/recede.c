@@ -154,7 +154,7 @@ static void run(const gchar *name, gint given, const GimpParam *params, gint *re
                 GimpParam **values) {
   static GimpParam result[2];
   static char *message; /* GIMP reads it after we return */
-  rp_host host = {params[1].data.d_image, params[2].data.d_drawable, -1};
+  rp_host host = {params[1].data.d_image, params[2].data.d_drawable, -1, -1};
   rp_translations_start(gimp_get_progname());
   gegl_init(NULL, NULL);
   rp_procedure procedure = strcmp(name, rp_procedure_name(RP_FILL)) == 0 ? RP_FILL : RP_SYNTHESIZE;

@@ -121,9 +121,9 @@ static void lay_out(dialog *d) {
   gtk_widget_set_vexpand(row, TRUE);
 }
 
-static gboolean ask(dialog *d, GtkWidget *controls, rp_request *request) {
+static gboolean ask(dialog *d, rp_request *request) {
   while (gimp_procedure_dialog_run(d->dialog))
-    if (rp_panel_compute(d->panel, GTK_WIDGET(d->dialog), controls, request)) return TRUE;
+    if (rp_panel_compute(d->panel, request)) return TRUE;
   return FALSE;
 }
 
@@ -142,8 +142,9 @@ gboolean rp_host_dialog(rp_host *host, rp_settings *settings, rp_picture *pictur
     return FALSE;
   }
   lay_out(&d);
+  rp_panel_attach(d.panel, GTK_WIDGET(d.dialog), controls);
   gulong notify = g_signal_connect(host->config, "notify", G_CALLBACK(on_config), &d);
-  gboolean done = ask(&d, controls, request);
+  gboolean done = ask(&d, request);
   g_signal_handler_disconnect(host->config, notify);
   rp_panel_free(d.panel);
   gtk_widget_destroy(GTK_WIDGET(d.dialog));

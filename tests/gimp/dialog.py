@@ -11,6 +11,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 from host import PRELUDE, Host, Tap
+from meanwhile import check_meanwhile
 from server import IMAGE, Server
 from window import Window, plain, wait_for, walk
 
@@ -216,6 +217,7 @@ def main():
         check_cancel(dialog, host)
         check_fill_and_undo(dialog, window, frame, server, host.folder)
         check_last_values(dialog, window, frame)
+        check_meanwhile(dialog, window, frame, server, host.folder)
         log = (Path(artefacts) / f"gimp{name}.log").read_text(errors="replace")
         tap.case("duplicate mnemonic" not in log.lower(), "no mnemonic twice", log[-2000:])
     tap.plan()
