@@ -22,8 +22,9 @@ const char *rp_target_refusal(const rp_target *target, gboolean writes, gboolean
     return _("This is a text layer. Choose Layer > Discard Text Information first, or fill into a "
              "new layer.");
   if (target->locked)
-    return _("The layer's pixels are locked. Unlock them in the Layers dialog, or fill into a new "
-             "layer.");
+    return _(
+        "The pixels of the layer, or of a group around it, are locked. Unlock them in the Layers "
+        "dialog, or fill into a new layer.");
   return NULL;
 }
 

@@ -9,12 +9,19 @@ gboolean rp_host_is_there(const rp_host *host) {
   return gimp_image_is_valid(host->image) && gimp_item_is_valid(host->drawable);
 }
 
+/* A group's lock holds for all that lies in it. */
+static gboolean is_locked(gint32 item) {
+  for (; item >= 0; item = gimp_item_get_parent(item))
+    if (gimp_item_get_lock_content(item)) return TRUE;
+  return FALSE;
+}
+
 rp_target rp_host_target(const rp_host *host) {
   gint32 item = host->drawable;
   gboolean is_layer = gimp_item_is_layer(item);
   return (rp_target){.group = gimp_item_is_group(item),
                      .indexed = gimp_drawable_is_indexed(item),
-                     .locked = gimp_item_get_lock_content(item),
+                     .locked = is_locked(item),
                      .text = gimp_item_is_text_layer(item),
                      .floating = is_layer && gimp_layer_is_floating_sel(item),
                      .is_layer = is_layer};

@@ -7,12 +7,19 @@ gboolean rp_host_is_there(const rp_host *host) {
   return gimp_image_is_valid(host->image) && gimp_item_is_valid(GIMP_ITEM(host->drawable));
 }
 
+/* A group's lock holds for all that lies in it. */
+static gboolean is_locked(GimpItem *item) {
+  for (; item; item = gimp_item_get_parent(item))
+    if (gimp_item_get_lock_content(item)) return TRUE;
+  return FALSE;
+}
+
 rp_target rp_host_target(const rp_host *host) {
   GimpItem *item = GIMP_ITEM(host->drawable);
   gboolean is_layer = gimp_item_is_layer(item);
   return (rp_target){.group = gimp_item_is_group_layer(item),
                      .indexed = gimp_drawable_is_indexed(host->drawable),
-                     .locked = gimp_item_get_lock_content(item),
+                     .locked = is_locked(item),
                      .text = gimp_item_is_text_layer(item),
                      .floating = is_layer && gimp_layer_is_floating_sel(GIMP_LAYER(item)),
                      .is_layer = is_layer};
