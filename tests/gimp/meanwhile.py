@@ -2,12 +2,15 @@
 import re
 
 import numpy as np
-from window import wait_for
+from window import wait_for, walk
 
 SELECT = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE {} {} {} {})(gimp-displays-flush)"
 OLD, NEW = (330, 380, 300, 130), (100, 300, 350, 150)
-# A layer of its own to work on, e.
-LAYER = "(define e (car (gimp-layer-copy (t-layer i){})))(gimp-image-insert-layer i e 0 0)"
+# A layer of its own to work on, e, and a channel that is white, c.
+ITEMS = ("(define e (car (gimp-layer-copy (t-layer i){})))(gimp-image-insert-layer i e 0 0)"
+         "(gimp-selection-all i)(define c (car (gimp-selection-save i)))(t-select-layer i e)")
+SELECT_CHANNEL = {"2": "(gimp-image-set-active-channel i c)",
+                  "3": "(gimp-image-set-selected-channels i (vector c))"}
 
 
 def inside(layer, box):
@@ -40,24 +43,41 @@ def start_run(dialog):
 def check_before_ok(dialog, window, frame, server, folder):
     """Another selection while the dialog is open, and a lock."""
     tap = dialog.tap
-    server.run(LAYER.format(" FALSE" if dialog.window.host.name == "2" else "")
-               + SELECT.format(*OLD))
+    server.run(ITEMS.format(" FALSE" if window.host.name == "2" else "") + SELECT.format(*OLD))
     before = server.save(folder / "before.xcf")
     dialog.open(frame)
     dialog.set("Slant", 80)
     server.run("(gimp-item-set-lock-content e TRUE)")
     dialog.press("OK")
-    tap.case(dialog.says("pixels are locked") and dialog.alive(), "OK says that pixels are locked",
+    tap.case(dialog.says("are locked") and dialog.alive(), "OK says that pixels are locked",
              dialog.status() if dialog.alive() else "")
     server.run("(gimp-item-set-lock-content e FALSE)(gimp-selection-none i)")
     dialog.press("OK")
     tap.case(dialog.says("Nothing is selected"), "OK says that nothing is selected any more",
              dialog.status())
     server.run(SELECT.format(*NEW))
+    dialog.choose("Selection Mask")
     dialog.press("OK")
     tap.case(wait_for(lambda: not dialog.alive(), 40), "another selection is filled")
     fills_just(tap, before, server.save(folder / "after.xcf"), NEW, "it alone")
     is_undone(tap, window, frame, server, before, folder / "undone.xcf", "and undone")
+
+
+def check_channel(dialog, window, frame, server):
+    """The channel that was copied from is now to be filled itself."""
+    tap = dialog.tap
+    server.run(SELECT_CHANNEL[window.host.name])
+    dialog.open(frame)
+    source = next(node.name for node in walk(dialog.root) if node.getRoleName() == "combo box"
+                  and any(item.name == "Around the selection" for item in walk(node)))
+    tap.case(source == "Around the selection", "nothing is copied from itself", source)
+    dialog.choose("A new layer")
+    dialog.press("OK")
+    tap.case(dialog.says("can only be filled in place"), "a channel's fill needs its place",
+             dialog.status() if dialog.alive() else "")
+    dialog.press("Cancel")
+    wait_for(lambda: not dialog.alive(), 10)
+    server.run("(t-select-layer i e)")
 
 
 def check_while_running(dialog, window, frame, server, folder):
@@ -104,5 +124,6 @@ def check_lost(dialog, window, frame, server, folder):
 
 def check_meanwhile(dialog, window, frame, server, folder):
     check_before_ok(dialog, window, frame, server, folder)
+    check_channel(dialog, window, frame, server)
     check_while_running(dialog, window, frame, server, folder)
     check_lost(dialog, window, frame, server, folder)
