@@ -130,11 +130,16 @@ static void show_plane(rp_panel *panel) {
   gtk_widget_queue_draw(panel->area);
 }
 
+static void stop_estimate(rp_panel *panel) {
+  if (panel->estimate.worker) explain(panel);
+  rp_background_stop(&panel->estimate);
+  gtk_widget_set_sensitive(panel->estimate_button, TRUE);
+}
+
 /* Whoever sets an angle by hand means it. */
 static void take_angles(rp_panel *panel) {
   if (choice(panel, "orientation") == RECEDE_ORIENTATION_ANGLES) return;
-  rp_background_stop(&panel->estimate);
-  gtk_widget_set_sensitive(panel->estimate_button, TRUE);
+  stop_estimate(panel);
   panel->setting = TRUE;
   panel->set(panel->user, "orientation", RECEDE_ORIENTATION_ANGLES);
   panel->setting = FALSE;
@@ -186,6 +191,12 @@ static void start_estimate(rp_panel *panel) {
   rp_background_start(&panel->estimate, &request);
 }
 
+/* When what it depends on has changed. */
+static void renew_estimate(rp_panel *panel) {
+  stop_estimate(panel);
+  if (choice(panel, "orientation") == RECEDE_ORIENTATION_AUTO) start_estimate(panel);
+}
+
 static void on_estimate_clicked(GtkButton *button, gpointer user) {
   rp_panel *panel = user;
   (void)button;
@@ -209,7 +220,7 @@ static void take_source(rp_panel *panel) {
   char *message = NULL;
   int id = choice(panel, "source");
   stop_draft(panel);
-  rp_background_stop(&panel->estimate);
+  stop_estimate(panel);
   rp_pixels_clear(&panel->picture->source);
   if (id >= 0 && !rp_read_source(panel->host, id, panel->picture, &message)) say(panel, message);
   rp_scene_set_source(&panel->scene, panel->picture);
@@ -220,20 +231,22 @@ void rp_panel_changed(rp_panel *panel, const char *key) {
   if (panel->setting) return;
   if (strcmp(key, "slant") == 0 || strcmp(key, "tilt") == 0) take_angles(panel);
   if (strcmp(key, "source") == 0) take_source(panel);
-  if (strcmp(key, "orientation") == 0 && choice(panel, key) == RECEDE_ORIENTATION_AUTO)
-    start_estimate(panel);
+  if (strcmp(key, "orientation") == 0 || strcmp(key, "source") == 0 || strcmp(key, "fov") == 0)
+    renew_estimate(panel);
+  show_plane(panel);
+}
+
+void rp_panel_changed_all(rp_panel *panel) {
+  explain(panel);
+  if (panel->settings->procedure == RP_FILL) take_source(panel);
+  renew_estimate(panel);
   show_plane(panel);
 }
 
 /* The scene is new. */
 static void show_picture(rp_panel *panel) {
-  explain(panel);
-  if (panel->settings->procedure == RP_FILL)
-    take_source(panel);
-  else
-    rp_scene_make_exemplar(&panel->scene);
-  show_plane(panel);
-  if (choice(panel, "orientation") == RECEDE_ORIENTATION_AUTO) start_estimate(panel);
+  if (panel->settings->procedure == RP_SYNTHESIZE) rp_scene_make_exemplar(&panel->scene);
+  rp_panel_changed_all(panel);
 }
 
 /* The user works on while the dialog is open: selects something else, moves or crops the layer. Why
@@ -250,7 +263,7 @@ static const char *read_anew(rp_panel *panel) {
     return rp_no_memory();
   }
   stop_draft(panel);
-  rp_background_stop(&panel->estimate);
+  stop_estimate(panel);
   rp_picture_clear(panel->picture);
   *panel->picture = picture;
   scene.show = panel->scene.show;
@@ -373,8 +386,7 @@ gboolean rp_panel_compute(rp_panel *panel, rp_request *request) {
     return FALSE;
   }
   stop_draft(panel);
-  rp_background_stop(&panel->estimate);
-  gtk_widget_set_sensitive(panel->estimate_button, TRUE);
+  stop_estimate(panel);
   set_sensitive(panel, FALSE);
   rp_outcome outcome = rp_compute(panel->host, panel->settings, panel->picture, request,
                                   rp_watch_run, &panel->watch, &message);

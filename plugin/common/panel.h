@@ -21,6 +21,8 @@ GtkWidget *rp_panel_widget(rp_panel *panel);
 void rp_panel_attach(rp_panel *panel, GtkWidget *dialog, GtkWidget *controls);
 /* A control has another value, and settings has it too. */
 void rp_panel_changed(rp_panel *panel, const char *key);
+/* Several have, at once: Reset, presets. No angle among them was set by hand. */
+void rp_panel_changed_all(rp_panel *panel);
 /* The run that OK asks for: keeps the dialog alive, shows progress; the dialog's Cancel and close
  * button stop it. TRUE: done. FALSE: the panel says why not. */
 gboolean rp_panel_compute(rp_panel *panel, rp_request *request);

@@ -17,6 +17,7 @@ typedef struct {
   rp_settings *settings;
   rp_panel *panel;
   GtkWidget *dialog, *table;
+  gboolean showing; /* all settings are being shown: no control's change is told */
   GObject *controls[RP_MAX_ARGUMENTS]; /* adjustments of numbers, combo boxes of choices */
 } dialog;
 
@@ -28,7 +29,7 @@ static const rp_argument *row_of(const dialog *d, int index) {
 static void changed(dialog *d, int index, double value) {
   if (d->settings->values[index] == value) return;
   d->settings->values[index] = value;
-  if (d->panel) rp_panel_changed(d->panel, row_of(d, index)->key);
+  if (d->panel && !d->showing) rp_panel_changed(d->panel, row_of(d, index)->key);
 }
 
 static int index_of(const dialog *d, const void *control) {
@@ -63,8 +64,11 @@ static void show_settings(gpointer user, const rp_settings *settings) {
   dialog *d = user;
   int count;
   rp_arguments(settings->procedure, &count);
+  d->showing = TRUE;
   for (int i = 0; i < count; i++)
     if (row_of(d, i)->type != RP_DRAWABLE) set_control(d, i, settings->values[i]);
+  d->showing = FALSE;
+  rp_panel_changed_all(d->panel);
 }
 
 /* --------------------------------------------------------------------------------- controls -- */

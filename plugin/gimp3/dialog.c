@@ -1,6 +1,7 @@
 /* GIMP 3's dialog: GimpProcedureDialog's controls beside the shared panel. */
 #include <libgimp/gimp.h>
 #include <libgimp/gimpui.h>
+#include <string.h>
 
 #include "../common/intl.h"
 #include "../common/panel.h"
@@ -17,14 +18,21 @@ typedef struct {
 
 /* ---------------------------------------------------------------------------------- changes -- */
 
+/* Reset and Load set all values before they tell the first: then others than that one differ. */
 static void on_config(GObject *config, GParamSpec *spec, gpointer user) {
   dialog *d = user;
-  if (rp_settings_index(d->settings, spec->name) < 0) return;
+  rp_settings before = *d->settings;
+  int index = rp_settings_index(&before, spec->name);
   rp_settings_from_config(d->settings, GIMP_PROCEDURE_CONFIG(config));
-  if (d->source && g_str_equal(spec->name, "source"))
+  if (memcmp(&before, d->settings, sizeof before) == 0) return;
+  if (d->source)
     gimp_int_combo_box_set_active(GIMP_INT_COMBO_BOX(d->source),
                                   (gint)rp_settings_get(d->settings, "source"));
-  if (d->panel) rp_panel_changed(d->panel, spec->name);
+  if (index >= 0) before.values[index] = d->settings->values[index];
+  if (memcmp(&before, d->settings, sizeof before) == 0)
+    rp_panel_changed(d->panel, spec->name);
+  else
+    rp_panel_changed_all(d->panel);
 }
 
 static void set_by_key(gpointer user, const char *key, double value) {

@@ -22,6 +22,7 @@ SELECTION = (330, 380, 300, 130)
 SELECT = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE {} {} {} {})"
 
 
+ESTIMATE = "Estimate from the picture"
 FILL_MENU = ("Filters", "Enhance", "Perspective Fill")
 
 
@@ -81,6 +82,26 @@ class Dialog:
                                       and all(word in node.name for word in words)), None), 10)
         self.window.press(item)
 
+    def chosen(self, item):
+        """What the combo box that has this item shows."""
+        return next(node.name for node in walk(self.root) if node.getRoleName() == "combo box"
+                    and any(child.name == item for child in walk(node)))
+
+    def named(self, *names):
+        """Any node of the application so called, for menus that pop up."""
+        def look():
+            for application in self.window.applications():
+                for node in walk(application):
+                    if plain(node.name) in names and node.getRoleName() != "label":
+                        return node
+            return None
+        return wait_for(look, 10)
+
+    def reset(self):
+        self.window.press(self.named("Reset"))
+        if self.window.host.name == "3":
+            self.window.press(self.named("Reset to Factory Defaults"))
+
     def alive(self):
         return self.window.frame(self.path[-1], 1) is not None
 
@@ -117,6 +138,19 @@ def check_estimate(dialog):
     dialog.press("Estimate")
     good = dialog.says("confidence", seconds=30)
     dialog.tap.case(good, "Estimate answers", dialog.status())
+    slant, orientation = dialog.value("Slant"), dialog.chosen(ESTIMATE)
+    dialog.set("Field of view", 100)
+    good = wait_for(lambda: abs(dialog.value("Slant") - slant) > .5, 20)
+    dialog.tap.case(good, "another field of view is estimated with",
+                    f"{dialog.value('Slant')} {dialog.status()}")
+    dialog.set("Slant", 70)
+    good = wait_for(lambda: dialog.chosen(ESTIMATE) != orientation, 5)
+    dialog.tap.case(good, "an angle set by hand is meant", dialog.chosen(ESTIMATE))
+    dialog.reset()
+    good = wait_for(lambda: dialog.value("Slant") == slant, 20)
+    dialog.tap.case(good and dialog.value("Field of view") == FOV
+                    and dialog.chosen(ESTIMATE) == orientation, "Reset estimates as the dialog opened",
+                    f"{dialog.value('Slant')}, not {slant}; {dialog.chosen(ESTIMATE)}")
 
 
 def check_drag(dialog):

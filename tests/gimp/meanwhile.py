@@ -2,7 +2,8 @@
 import re
 
 import numpy as np
-from window import wait_for, walk
+import pyatspi
+from window import wait_for
 
 SELECT = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE {} {} {} {})(gimp-displays-flush)"
 OLD, NEW = (330, 380, 300, 130), (100, 300, 350, 150)
@@ -56,7 +57,12 @@ def check_before_ok(dialog, window, frame, server, folder):
     tap.case(dialog.says("Nothing is selected"), "OK says that nothing is selected any more",
              dialog.status())
     server.run(SELECT.format(*NEW))
+    dialog.press("Estimate")
     dialog.choose("Selection Mask")
+    estimate = window.button(dialog.root, "Estimate")
+    tap.case(wait_for(lambda: estimate.getState().contains(pyatspi.STATE_SENSITIVE), 20),
+             "another source is estimated with", dialog.status())
+    dialog.set("Slant", 80)
     dialog.press("OK")
     tap.case(wait_for(lambda: not dialog.alive(), 40), "another selection is filled")
     fills_just(tap, before, server.save(folder / "after.xcf"), NEW, "it alone")
@@ -68,8 +74,7 @@ def check_channel(dialog, window, frame, server):
     tap = dialog.tap
     server.run(SELECT_CHANNEL[window.host.name])
     dialog.open(frame)
-    source = next(node.name for node in walk(dialog.root) if node.getRoleName() == "combo box"
-                  and any(item.name == "Around the selection" for item in walk(node)))
+    source = dialog.chosen("Around the selection")
     tap.case(source == "Around the selection", "nothing is copied from itself", source)
     dialog.choose("A new layer")
     dialog.press("OK")
