@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "background.h"
+#include "draft.h"
 #include "exchange.h"
 #include "intl.h"
 #include "preview.h"
@@ -12,8 +13,10 @@
 #include "watch.h"
 
 #define PROXY_LONGEST_PX 720
-#define DRAFT_AFTER_MS 250 /* after the last change */
 #define SHOWS 3
+/* The preview's size in a dialog that has room. */
+#define PREVIEW_WIDTH 600
+#define PREVIEW_HEIGHT 420
 
 struct rp_panel {
   rp_host *host;
@@ -22,10 +25,9 @@ struct rp_panel {
   rp_set_func set;
   gpointer user;
   rp_scene scene;
-  rp_background estimate, draft;
-  rp_watch watch; /* of the run that OK asks for */
-  guchar *draft_pixels;
-  guint draft_timer;
+  rp_background estimate;
+  rp_draft draft;
+  rp_watch watch;   /* of the run that OK asks for */
   gboolean setting; /* the panel itself is moving the controls */
   GtkWidget *box, *area, *row, *controls, *shows[SHOWS], *estimate_button;
 };
@@ -51,65 +53,13 @@ static int choice(const rp_panel *panel, const char *key) {
 
 /* ------------------------------------------------------------------------------------ draft -- */
 
-static void on_draft(gpointer user, const rp_request *request) {
+static void on_draft(gpointer user, const char *text) {
   rp_panel *panel = user;
-  if (request->status == RECEDE_OK) {
-    rp_scene_set_draft(&panel->scene, panel->draft_pixels);
-    explain(panel);
-  } else {
-    char *text = rp_failure(request);
+  if (text)
     say(panel, text);
-    g_free(text);
-  }
+  else
+    explain(panel);
   gtk_widget_queue_draw(panel->area);
-}
-
-static recede_view proxy_view(const rp_proxy *proxy, guchar *pixels, int channels) {
-  return (recede_view){
-      pixels, (gsize)(proxy->width * channels), proxy->width, proxy->height, channels, RECEDE_U8};
-}
-
-/* Estimated angles are shown by the sliders, so the draft takes them from there. */
-static gboolean draft_params(const rp_panel *panel, recede_params *params) {
-  char *message = NULL;
-  gboolean good = rp_settings_params(panel->settings, params, &message);
-  g_free(message);
-  if (params->orientation == RECEDE_ORIENTATION_AUTO)
-    params->orientation = RECEDE_ORIENTATION_ANGLES;
-  params->quality = RECEDE_QUALITY_DRAFT;
-  return good;
-}
-
-static gboolean start_draft(gpointer data) {
-  rp_panel *panel = data;
-  rp_proxy *proxy = &panel->scene.proxy;
-  rp_request request = {.run = RP_RUN_FILL, .threads = rp_host_threads()};
-  panel->draft_timer = 0;
-  if (panel->scene.show != RP_SHOW_DRAFT || !draft_params(panel, &request.params))
-    return G_SOURCE_REMOVE;
-  request.image = proxy_view(proxy, proxy->rgba, 4);
-  request.mask = proxy_view(proxy, proxy->mask, 1);
-  if (proxy->source) request.source = proxy_view(proxy, proxy->source, 1);
-  rp_background_stop(&panel->draft);
-  if (!panel->draft_pixels)
-    panel->draft_pixels = g_malloc((gsize)proxy->width * (gsize)proxy->height * 4);
-  request.result = proxy_view(proxy, panel->draft_pixels, 4);
-  say(panel, _("Making a draft…"));
-  rp_background_start(&panel->draft, &request);
-  return G_SOURCE_REMOVE;
-}
-
-static void stop_draft(rp_panel *panel) {
-  if (panel->draft_timer) g_source_remove(panel->draft_timer);
-  panel->draft_timer = 0;
-  rp_background_stop(&panel->draft);
-}
-
-static void renew_draft(rp_panel *panel) {
-  stop_draft(panel);
-  rp_scene_set_draft(&panel->scene, NULL);
-  if (panel->scene.show == RP_SHOW_DRAFT)
-    panel->draft_timer = g_timeout_add(DRAFT_AFTER_MS, start_draft, panel);
 }
 
 /* --------------------------------------------------------------------------------- estimate -- */
@@ -126,7 +76,7 @@ static void show_plane(rp_panel *panel) {
   rp_scene_set_angles(&panel->scene, frontal ? 0 : rp_settings_get(panel->settings, "slant"),
                       frontal ? 0 : rp_settings_get(panel->settings, "tilt"),
                       rp_settings_get(panel->settings, "fov"));
-  renew_draft(panel);
+  rp_draft_renew(&panel->draft);
   gtk_widget_queue_draw(panel->area);
 }
 
@@ -219,7 +169,7 @@ static void on_dragged(gpointer user, double slant_deg, double tilt_deg) {
 static void take_source(rp_panel *panel) {
   char *message = NULL;
   int id = choice(panel, "source");
-  stop_draft(panel);
+  rp_draft_stop(&panel->draft);
   stop_estimate(panel);
   rp_pixels_clear(&panel->picture->source);
   if (id >= 0 && !rp_read_source(panel->host, id, panel->picture, &message)) say(panel, message);
@@ -262,14 +212,13 @@ static const char *read_anew(rp_panel *panel) {
     rp_picture_clear(&picture);
     return rp_no_memory();
   }
-  stop_draft(panel);
+  rp_draft_clear(&panel->draft);
   stop_estimate(panel);
   rp_picture_clear(panel->picture);
   *panel->picture = picture;
   scene.show = panel->scene.show;
   rp_scene_clear(&panel->scene);
   panel->scene = scene;
-  g_clear_pointer(&panel->draft_pixels, g_free);
   show_picture(panel);
   return NULL;
 }
@@ -281,7 +230,8 @@ static void on_show(GtkToggleButton *button, gpointer user) {
     if (panel->shows[i] == GTK_WIDGET(button)) panel->scene.show = (rp_show)i;
   panel->scene.shade_is_old = TRUE;
   explain(panel);
-  if (panel->scene.show == RP_SHOW_DRAFT && !panel->scene.draft.pixels) renew_draft(panel);
+  if (panel->scene.show == RP_SHOW_DRAFT && !panel->scene.draft.pixels)
+    rp_draft_renew(&panel->draft);
   gtk_widget_queue_draw(panel->area);
 }
 
@@ -305,12 +255,12 @@ static GtkWidget *show_row(rp_panel *panel) {
   return row;
 }
 
-/* Two lines are kept free for it, so that nothing jumps. */
-static GtkWidget *status_line(rp_panel *panel) {
-  panel->watch.status = rp_ui_paragraph();
-  gtk_widget_set_size_request(panel->watch.status, 480, 40);
+/* Three lines are kept free for it, so that nothing jumps. */
+static GtkWidget *status_lines(rp_panel *panel) {
+  GtkWidget *lines = rp_ui_paragraph(&panel->watch.status);
+  gtk_widget_set_size_request(lines, RP_PREVIEW_LEAST_WIDTH, 54);
   atk_object_set_name(gtk_widget_get_accessible(panel->watch.status), _("Status"));
-  return panel->watch.status;
+  return lines;
 }
 
 static void build(rp_panel *panel) {
@@ -319,7 +269,7 @@ static void build(rp_panel *panel) {
   gtk_box_pack_start(GTK_BOX(panel->box), panel->area, TRUE, TRUE, 0);
   panel->row = show_row(panel);
   gtk_box_pack_start(GTK_BOX(panel->box), panel->row, FALSE, FALSE, 0);
-  gtk_box_pack_start(GTK_BOX(panel->box), status_line(panel), FALSE, FALSE, 0);
+  gtk_box_pack_start(GTK_BOX(panel->box), status_lines(panel), FALSE, FALSE, 0);
   panel->watch.progress = gtk_progress_bar_new();
   gtk_box_pack_start(GTK_BOX(panel->box), panel->watch.progress, FALSE, FALSE, 0);
   gtk_widget_show_all(panel->box);
@@ -331,7 +281,8 @@ rp_panel *rp_panel_new(rp_host *host, rp_settings *settings, rp_picture *picture
   *panel =
       (rp_panel){.host = host, .settings = settings, .picture = picture, .set = set, .user = user};
   panel->estimate = (rp_background){.done = on_estimate, .user = panel};
-  panel->draft = (rp_background){.done = on_draft, .user = panel};
+  panel->draft =
+      (rp_draft){.settings = settings, .scene = &panel->scene, .told = on_draft, .user = panel};
   if (!rp_scene_new(picture, PROXY_LONGEST_PX, &panel->scene)) {
     rp_panel_free(panel);
     return NULL;
@@ -357,14 +308,15 @@ static gboolean on_focus(GtkWidget *dialog, GdkEvent *event, gpointer user) {
 void rp_panel_attach(rp_panel *panel, GtkWidget *dialog, GtkWidget *controls) {
   panel->watch.dialog = dialog;
   panel->controls = controls;
+  rp_ui_open_larger(dialog, PREVIEW_WIDTH - RP_PREVIEW_LEAST_WIDTH,
+                    PREVIEW_HEIGHT - RP_PREVIEW_LEAST_HEIGHT);
   g_signal_connect(dialog, "focus-in-event", G_CALLBACK(on_focus), panel);
 }
 
 void rp_panel_free(rp_panel *panel) {
-  stop_draft(panel);
+  rp_draft_clear(&panel->draft);
   rp_background_stop(&panel->estimate);
   rp_scene_clear(&panel->scene);
-  g_free(panel->draft_pixels);
   g_free(panel);
 }
 
@@ -385,7 +337,7 @@ gboolean rp_panel_compute(rp_panel *panel, rp_request *request) {
     say(panel, text);
     return FALSE;
   }
-  stop_draft(panel);
+  rp_draft_stop(&panel->draft);
   stop_estimate(panel);
   set_sensitive(panel, FALSE);
   rp_outcome outcome = rp_compute(panel->host, panel->settings, panel->picture, request,

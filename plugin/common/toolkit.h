@@ -13,8 +13,12 @@ typedef struct {
 
 /* Whenever the area is to be drawn, painter draws it; it must outlive the area. */
 void rp_ui_on_draw(GtkWidget *area, rp_painter *painter);
-/* A label of several lines that starts at the top left. */
-GtkWidget *rp_ui_paragraph(void);
+/* Room for some lines of text, from the top left, broken where its width ends; *label takes the
+ * text.
+ */
+GtkWidget *rp_ui_paragraph(GtkWidget **label);
+/* The window opens by so much larger than what is in it asks for, where the screen has room. */
+void rp_ui_open_larger(GtkWidget *window, int width, int height);
 void rp_ui_set_cursor(GtkWidget *widget, GdkCursorType type);
 
 #endif
