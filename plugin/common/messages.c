@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "intl.h"
+#include "pixels.h"
 
 const char *rp_target_refusal(const rp_target *target, gboolean writes, gboolean new_layer) {
   if (target->group)
@@ -72,14 +73,26 @@ const char *rp_stage_label(const char *stage) {
   return _("Filling");
 }
 
+static char *empty_source(const rp_request *request) {
+  const recede_view *mask = &request->mask;
+  gsize left = 0;
+  for (int y = 0; y < mask->height; y++)
+    for (int x = 0; x < mask->width; x++) left += !(rp_mask_value(mask, x, y) > 0);
+  if (left == 0 && !request->source.data)
+    return g_strdup(
+        _("The selection covers all of the layer that is selected, so nothing of it is left "
+          "to copy from. Select the layer that is to be filled, select less, or choose "
+          "another source."));
+  return g_strdup(_("Nothing is left to copy from. Select less, or choose another source."));
+}
+
 char *rp_failure(const rp_request *request) {
   switch (request->status) {
     case RECEDE_NO_MEMORY: return g_strdup(rp_no_memory());
     case RECEDE_EMPTY_TARGET:
       return g_strdup(_("Nothing of the selection lies on the plane: it is all beyond the horizon. "
                         "Check the horizon in the preview, or change slant and tilt."));
-    case RECEDE_EMPTY_SOURCE:
-      return g_strdup(_("Nothing is left to copy from. Select less, or choose another source."));
+    case RECEDE_EMPTY_SOURCE: return empty_source(request);
     case RECEDE_NO_PLANE:
       return g_strdup(_("The orientation of the plane could not be read from the picture. Set "
                         "slant and tilt."));

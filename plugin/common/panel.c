@@ -14,9 +14,11 @@
 
 #define PROXY_LONGEST_PX 720
 #define SHOWS 3
-/* The preview's size in a dialog that has room. */
+/* The preview as the dialog opens, and as small as it can be made. */
 #define PREVIEW_WIDTH 600
 #define PREVIEW_HEIGHT 420
+#define LEAST_WIDTH 240
+#define LEAST_HEIGHT 180
 
 struct rp_panel {
   rp_host *host;
@@ -43,6 +45,10 @@ static void explain(rp_panel *panel) {
                  "would have to be magnified; grey: beyond the horizon."));
   else if (panel->scene.show == RP_SHOW_DRAFT && panel->scene.draft.pixels)
     say(panel, _("Draft: the real fill at the preview's size."));
+  else if (rp_scene_is_beyond(&panel->scene))
+    say(panel,
+        _("The picture lies beyond the horizon of this plane, so nothing can be filled. Choose "
+          "a smaller slant."));
   else
     say(panel, _("Drag the horizon, its handles or the grid to lay the plane on the picture."));
 }
@@ -73,9 +79,11 @@ static void set_values(rp_panel *panel, double slant_deg, double tilt_deg) {
 
 static void show_plane(rp_panel *panel) {
   gboolean frontal = choice(panel, "orientation") == RECEDE_ORIENTATION_FRONTAL;
+  gboolean was_beyond = rp_scene_is_beyond(&panel->scene);
   rp_scene_set_angles(&panel->scene, frontal ? 0 : rp_settings_get(panel->settings, "slant"),
                       frontal ? 0 : rp_settings_get(panel->settings, "tilt"),
                       rp_settings_get(panel->settings, "fov"));
+  if (rp_scene_is_beyond(&panel->scene) != was_beyond) explain(panel);
   rp_draft_renew(&panel->draft);
   gtk_widget_queue_draw(panel->area);
 }
@@ -181,16 +189,16 @@ void rp_panel_changed(rp_panel *panel, const char *key) {
   if (panel->setting) return;
   if (strcmp(key, "slant") == 0 || strcmp(key, "tilt") == 0) take_angles(panel);
   if (strcmp(key, "source") == 0) take_source(panel);
+  show_plane(panel);
   if (strcmp(key, "orientation") == 0 || strcmp(key, "source") == 0 || strcmp(key, "fov") == 0)
     renew_estimate(panel);
-  show_plane(panel);
 }
 
 void rp_panel_changed_all(rp_panel *panel) {
   explain(panel);
   if (panel->settings->procedure == RP_FILL) take_source(panel);
-  renew_estimate(panel);
   show_plane(panel);
+  renew_estimate(panel);
 }
 
 /* The scene is new. */
@@ -258,7 +266,7 @@ static GtkWidget *show_row(rp_panel *panel) {
 /* Three lines are kept free for it, so that nothing jumps. */
 static GtkWidget *status_lines(rp_panel *panel) {
   GtkWidget *lines = rp_ui_paragraph(&panel->watch.status);
-  gtk_widget_set_size_request(lines, RP_PREVIEW_LEAST_WIDTH, 54);
+  gtk_widget_set_size_request(lines, LEAST_WIDTH, 54);
   atk_object_set_name(gtk_widget_get_accessible(panel->watch.status), _("Status"));
   return lines;
 }
@@ -308,8 +316,9 @@ static gboolean on_focus(GtkWidget *dialog, GdkEvent *event, gpointer user) {
 void rp_panel_attach(rp_panel *panel, GtkWidget *dialog, GtkWidget *controls) {
   panel->watch.dialog = dialog;
   panel->controls = controls;
-  rp_ui_open_larger(dialog, PREVIEW_WIDTH - RP_PREVIEW_LEAST_WIDTH,
-                    PREVIEW_HEIGHT - RP_PREVIEW_LEAST_HEIGHT);
+  gtk_widget_set_size_request(panel->area, PREVIEW_WIDTH, PREVIEW_HEIGHT);
+  rp_ui_open_so_large(dialog);
+  gtk_widget_set_size_request(panel->area, LEAST_WIDTH, LEAST_HEIGHT);
   g_signal_connect(dialog, "focus-in-event", G_CALLBACK(on_focus), panel);
 }
 
@@ -327,6 +336,7 @@ static void set_sensitive(rp_panel *panel, gboolean sensitive) {
   gtk_widget_set_sensitive(panel->row, sensitive);
   gtk_widget_set_sensitive(panel->controls, sensitive);
   gtk_dialog_set_response_sensitive(GTK_DIALOG(panel->watch.dialog), GTK_RESPONSE_OK, sensitive);
+  gtk_dialog_set_response_sensitive(GTK_DIALOG(panel->watch.dialog), RP_RESPONSE_RESET, sensitive);
 }
 
 gboolean rp_panel_compute(rp_panel *panel, rp_request *request) {

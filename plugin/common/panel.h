@@ -8,6 +8,8 @@
 
 typedef struct rp_panel rp_panel;
 
+#define RP_RESPONSE_RESET 1 /* of the dialog's Reset; GIMP 3's own dialog has this number, too */
+
 /* The panel wants a control to show another value. The host then calls rp_panel_changed() for it as
  * for any change. */
 typedef void (*rp_set_func)(gpointer user, const char *key, double value);

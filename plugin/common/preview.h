@@ -7,9 +7,6 @@
 
 typedef void (*rp_angles_func)(gpointer user, double slant_deg, double tilt_deg);
 
-#define RP_PREVIEW_LEAST_WIDTH 240
-#define RP_PREVIEW_LEAST_HEIGHT 180
-
 /* dragged is called for every motion of a drag. */
 GtkWidget *rp_preview_new(rp_scene *scene, rp_angles_func dragged, gpointer user);
 

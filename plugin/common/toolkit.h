@@ -17,8 +17,8 @@ void rp_ui_on_draw(GtkWidget *area, rp_painter *painter);
  * text.
  */
 GtkWidget *rp_ui_paragraph(GtkWidget **label);
-/* The window opens by so much larger than what is in it asks for, where the screen has room. */
-void rp_ui_open_larger(GtkWidget *window, int width, int height);
+/* The window opens as large as what is in it asks for now, or as the screen has room for. */
+void rp_ui_open_so_large(GtkWidget *window);
 void rp_ui_set_cursor(GtkWidget *widget, GdkCursorType type);
 
 #endif

@@ -8,7 +8,6 @@
 #include "host.h"
 #include "presets.h"
 
-#define RESPONSE_RESET 1
 #define SCALE_WIDTH 160
 #define SPIN_DIGITS 6
 
@@ -169,10 +168,10 @@ static void build_dialog(dialog *d) {
   const char *name = rp_procedure_name(d->settings->procedure);
   d->dialog = gimp_dialog_new(
       d->settings->procedure == RP_FILL ? _("Perspective Fill") : _("Perspective Texture"),
-      "recede", NULL, 0, gimp_standard_help_func, name, _("_Reset"), RESPONSE_RESET, _("_Cancel"),
-      GTK_RESPONSE_CANCEL, _("_OK"), GTK_RESPONSE_OK, NULL);
+      "recede", NULL, 0, gimp_standard_help_func, name, _("_Reset"), RP_RESPONSE_RESET,
+      _("_Cancel"), GTK_RESPONSE_CANCEL, _("_OK"), GTK_RESPONSE_OK, NULL);
   gtk_dialog_set_default_response(GTK_DIALOG(d->dialog), GTK_RESPONSE_OK);
-  gtk_dialog_set_alternative_button_order(GTK_DIALOG(d->dialog), GTK_RESPONSE_OK, RESPONSE_RESET,
+  gtk_dialog_set_alternative_button_order(GTK_DIALOG(d->dialog), GTK_RESPONSE_OK, RP_RESPONSE_RESET,
                                           GTK_RESPONSE_CANCEL, -1);
   gimp_window_set_transient(GTK_WINDOW(d->dialog));
 }
@@ -201,7 +200,7 @@ static void reset(dialog *d) {
 static gboolean ask(dialog *d, rp_request *request) {
   for (;;) {
     gint response = gimp_dialog_run(GIMP_DIALOG(d->dialog));
-    if (response == RESPONSE_RESET)
+    if (response == RP_RESPONSE_RESET)
       reset(d);
     else if (response != GTK_RESPONSE_OK)
       return FALSE;

@@ -43,17 +43,17 @@ GtkWidget *rp_ui_paragraph(GtkWidget **label) {
   60 /* px for the window's frame and the desktop's bars, which GTK 2 does not tell \
       */
 
-void rp_ui_open_larger(GtkWidget *window, int width, int height) {
+void rp_ui_open_so_large(GtkWidget *window) {
   GdkScreen *screen = gtk_widget_get_screen(window);
   GtkRequisition size;
   GdkRectangle monitor;
   gtk_widget_size_request(window, &size);
-  width += size.width, height += size.height;
   for (int i = 0; i < gdk_screen_get_n_monitors(screen); i++) {
     gdk_screen_get_monitor_geometry(screen, i, &monitor);
-    width = MIN(width, monitor.width - AROUND), height = MIN(height, monitor.height - AROUND);
+    size.width = MIN(size.width, monitor.width - AROUND);
+    size.height = MIN(size.height, monitor.height - AROUND);
   }
-  gtk_window_set_default_size(GTK_WINDOW(window), width, height);
+  gtk_window_set_default_size(GTK_WINDOW(window), size.width, size.height);
 }
 
 void rp_ui_set_cursor(GtkWidget *widget, GdkCursorType type) {

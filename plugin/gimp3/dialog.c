@@ -118,13 +118,16 @@ static GtkWidget *build_controls(dialog *d) {
   return box;
 }
 
-static void lay_out(dialog *d) {
+static void lay_out(dialog *d, GtkWidget *controls) {
   GtkWidget *row = gimp_procedure_dialog_fill_box(d->dialog, "recede-row", "recede-controls", NULL);
   gtk_orientable_set_orientation(GTK_ORIENTABLE(row), GTK_ORIENTATION_HORIZONTAL);
   gtk_box_set_spacing(GTK_BOX(row), 12);
   GtkWidget *panel = rp_panel_widget(d->panel);
   gtk_box_pack_start(GTK_BOX(row), panel, TRUE, TRUE, 0);
   gtk_box_reorder_child(GTK_BOX(row), panel, 0);
+  /* What a larger dialog has more is the preview's. */
+  gtk_widget_set_hexpand(controls, FALSE);
+  gtk_box_set_child_packing(GTK_BOX(row), controls, FALSE, TRUE, 0, GTK_PACK_START);
   gimp_procedure_dialog_fill(d->dialog, "recede-row", NULL);
   gtk_widget_set_vexpand(row, TRUE);
 }
@@ -149,7 +152,7 @@ gboolean rp_host_dialog(rp_host *host, rp_settings *settings, rp_picture *pictur
     gtk_widget_destroy(GTK_WIDGET(d.dialog));
     return FALSE;
   }
-  lay_out(&d);
+  lay_out(&d, controls);
   rp_panel_attach(d.panel, GTK_WIDGET(d.dialog), controls);
   gulong notify = g_signal_connect(host->config, "notify", G_CALLBACK(on_config), &d);
   gboolean done = ask(&d, request);

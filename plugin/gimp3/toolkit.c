@@ -19,6 +19,7 @@ void rp_ui_on_draw(GtkWidget *area, rp_painter *painter) {
 GtkWidget *rp_ui_paragraph(GtkWidget **label) {
   *label = gtk_label_new("");
   gtk_label_set_line_wrap(GTK_LABEL(*label), TRUE);
+  gtk_label_set_max_width_chars(GTK_LABEL(*label), 1); /* takes the width there is, asks for none */
   gtk_label_set_xalign(GTK_LABEL(*label), 0);
   gtk_label_set_yalign(GTK_LABEL(*label), 0);
   return *label;
@@ -26,17 +27,17 @@ GtkWidget *rp_ui_paragraph(GtkWidget **label) {
 
 #define FRAME 40 /* px for the window's own */
 
-void rp_ui_open_larger(GtkWidget *window, int width, int height) {
+void rp_ui_open_so_large(GtkWidget *window) {
   GdkDisplay *display = gtk_widget_get_display(window);
   GtkRequisition size;
   GdkRectangle room;
-  gtk_widget_get_preferred_size(window, &size, NULL);
-  width += size.width, height += size.height;
+  gtk_widget_get_preferred_size(window, NULL, &size);
   for (int i = 0; i < gdk_display_get_n_monitors(display); i++) {
     gdk_monitor_get_workarea(gdk_display_get_monitor(display, i), &room);
-    width = MIN(width, room.width - FRAME), height = MIN(height, room.height - FRAME);
+    size.width = MIN(size.width, room.width - FRAME);
+    size.height = MIN(size.height, room.height - FRAME);
   }
-  gtk_window_set_default_size(GTK_WINDOW(window), width, height);
+  gtk_window_set_default_size(GTK_WINDOW(window), size.width, size.height);
 }
 
 void rp_ui_set_cursor(GtkWidget *widget, GdkCursorType type) {

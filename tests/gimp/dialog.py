@@ -10,6 +10,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+import pyatspi
 from host import PRELUDE, Host, Tap
 from meanwhile import check_meanwhile
 from server import IMAGE, Server
@@ -125,6 +126,11 @@ def check_sliders(dialog):
                        f"{label} moves the preview")
     dialog.set("Tilt", 0)
     dialog.set("Field of view", FOV)
+    dialog.set("Slant", 179)
+    dialog.tap.case(dialog.says("lies beyond the horizon"), "a slant that shows nothing is said",
+                    dialog.status())
+    dialog.set("Slant", 78)
+    dialog.tap.case(dialog.says("Drag"), "and no more when the horizon is back", dialog.status())
     dialog.changes(lambda: dialog.toggle("Scale map"), "the scale map is shown")
     dialog.window.screenshot("scale-map")
     dialog.changes(lambda: dialog.toggle("Draft result"), "the draft is shown")
@@ -190,6 +196,9 @@ def check_cancel(dialog, host):
     working = wait_for(lambda: not any(word in dialog.status() for word in
                                        ("confidence", "Drag", "Draft")), 10, step=.05)
     dialog.window.screenshot("running")
+    reset = dialog.named("Reset")
+    dialog.tap.case(not reset.getState().contains(pyatspi.STATE_SENSITIVE),
+                    "Reset waits for the run's end")
     start = time.monotonic()
     dialog.window.press(cancel)
     stopped = dialog.says("Stopped", seconds=5)

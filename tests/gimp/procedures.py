@@ -104,7 +104,7 @@ def errors(host):
            select + "(gimp-layer-set-offsets d 200 200)" + host.fill(**frontal),
            "outside the layer")
     yield ("everything selected", "(gimp-selection-all i)" + host.fill(**frontal),
-           "Nothing is left to copy from")
+           "covers all of the layer that is selected")
     yield ("a group", f"(define g (car {new_group(host)}))(gimp-image-insert-layer i g 0 0)"
            + select + host.fill(layer="g", **frontal), "layer group")
     yield ("indexed", select + "(gimp-image-convert-indexed i CONVERT-DITHER-NONE"
