@@ -31,6 +31,7 @@ struct rp_panel {
   rp_draft draft;
   rp_watch watch;   /* of the run that OK asks for */
   gboolean setting; /* the panel itself is moving the controls */
+  gboolean refused; /* why is what the panel says */
   GtkWidget *box, *area, *row, *controls, *shows[SHOWS], *estimate_button;
 };
 
@@ -302,14 +303,22 @@ rp_panel *rp_panel_new(rp_host *host, rp_settings *settings, rp_picture *picture
 
 GtkWidget *rp_panel_widget(rp_panel *panel) { return panel->box; }
 
+static gboolean can_fill(rp_panel *panel, gboolean result_chosen) {
+  const char *text = rp_refusal(panel->host, panel->settings, result_chosen);
+  if (!text) text = read_anew(panel);
+  if (text)
+    say(panel, text);
+  else if (panel->refused && !panel->estimate.worker)
+    explain(panel);
+  panel->refused = text != NULL;
+  return !panel->refused;
+}
+
 /* Back from the image's window. */
 static gboolean on_focus(GtkWidget *dialog, GdkEvent *event, gpointer user) {
   rp_panel *panel = user;
   (void)dialog, (void)event;
-  if (panel->watch.worker) return FALSE;
-  const char *text = rp_refusal(panel->host, panel->settings, FALSE);
-  if (!text) text = read_anew(panel);
-  if (text) say(panel, text);
+  if (!panel->watch.worker) can_fill(panel, FALSE);
   return FALSE;
 }
 
@@ -341,12 +350,7 @@ static void set_sensitive(rp_panel *panel, gboolean sensitive) {
 
 gboolean rp_panel_compute(rp_panel *panel, rp_request *request) {
   char *message = NULL;
-  const char *text = rp_refusal(panel->host, panel->settings, TRUE);
-  if (!text) text = read_anew(panel);
-  if (text) {
-    say(panel, text);
-    return FALSE;
-  }
+  if (!can_fill(panel, TRUE)) return FALSE;
   rp_draft_stop(&panel->draft);
   stop_estimate(panel);
   set_sensitive(panel, FALSE);
