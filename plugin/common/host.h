@@ -9,6 +9,8 @@
 
 typedef struct rp_host rp_host;
 
+/* FALSE: the drawable was deleted, or its image closed. Nothing else may be asked then. */
+gboolean rp_host_is_there(const rp_host *host);
 rp_target rp_host_target(const rp_host *host);
 gboolean rp_host_has_selection(const rp_host *host);
 
@@ -31,6 +33,10 @@ gboolean rp_host_alpha_locked(const rp_host *host);
 GeglBuffer *rp_host_open_shadow(const rp_host *host);
 /* The shadow becomes the drawable, within the selection: one step of undo. */
 void rp_host_merge_shadow(const rp_host *host);
+/* Nothing is selected until rp_host_select_again() brings back what was. All that happens between
+ * the two is one step of undo. */
+void rp_host_select_nothing(rp_host *host);
+void rp_host_select_again(rp_host *host);
 void rp_host_updated(const rp_host *host, const GeglRectangle *box);
 /* One step of undo. */
 gboolean rp_host_write_new_layer(rp_host *host, const rp_picture *picture);

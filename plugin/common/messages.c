@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "intl.h"
+#include "pixels.h"
 
 const char *rp_target_refusal(const rp_target *target, gboolean writes, gboolean new_layer) {
   if (target->group)
@@ -22,9 +23,14 @@ const char *rp_target_refusal(const rp_target *target, gboolean writes, gboolean
     return _("This is a text layer. Choose Layer > Discard Text Information first, or fill into a "
              "new layer.");
   if (target->locked)
-    return _("The layer's pixels are locked. Unlock them in the Layers dialog, or fill into a new "
-             "layer.");
+    return _(
+        "The pixels of the layer, or of a group around it, are locked. Unlock them in the Layers "
+        "dialog, or fill into a new layer.");
   return NULL;
+}
+
+const char *rp_layer_gone(void) {
+  return _("The layer is gone: it was deleted, or its image was closed. There is nothing to fill.");
 }
 
 const char *rp_no_selection(void) {
@@ -67,14 +73,26 @@ const char *rp_stage_label(const char *stage) {
   return _("Filling");
 }
 
+static char *empty_source(const rp_request *request) {
+  const recede_view *mask = &request->mask;
+  gsize left = 0;
+  for (int y = 0; y < mask->height; y++)
+    for (int x = 0; x < mask->width; x++) left += !(rp_mask_value(mask, x, y) > 0);
+  if (left == 0 && !request->source.data)
+    return g_strdup(
+        _("The selection covers all of the layer that is selected, so nothing of it is left "
+          "to copy from. Select the layer that is to be filled, select less, or choose "
+          "another source."));
+  return g_strdup(_("Nothing is left to copy from. Select less, or choose another source."));
+}
+
 char *rp_failure(const rp_request *request) {
   switch (request->status) {
     case RECEDE_NO_MEMORY: return g_strdup(rp_no_memory());
     case RECEDE_EMPTY_TARGET:
       return g_strdup(_("Nothing of the selection lies on the plane: it is all beyond the horizon. "
                         "Check the horizon in the preview, or change slant and tilt."));
-    case RECEDE_EMPTY_SOURCE:
-      return g_strdup(_("Nothing is left to copy from. Select less, or choose another source."));
+    case RECEDE_EMPTY_SOURCE: return empty_source(request);
     case RECEDE_NO_PLANE:
       return g_strdup(_("The orientation of the plane could not be read from the picture. Set "
                         "slant and tilt."));

@@ -15,6 +15,7 @@ typedef struct {
 /* Why this target cannot be filled and what to do; NULL: it can. */
 const char *rp_target_refusal(const rp_target *target, gboolean writes, gboolean new_layer);
 
+const char *rp_layer_gone(void);
 const char *rp_no_selection(void);
 const char *rp_selection_outside(void);
 const char *rp_one_layer_only(void);

@@ -5,14 +5,20 @@
 #include <string.h>
 
 #include "background.h"
+#include "draft.h"
 #include "exchange.h"
 #include "intl.h"
 #include "preview.h"
 #include "procedure.h"
+#include "watch.h"
 
 #define PROXY_LONGEST_PX 720
-#define DRAFT_AFTER_MS 250 /* after the last change */
 #define SHOWS 3
+/* The preview as the dialog opens, and as small as it can be made. */
+#define PREVIEW_WIDTH 600
+#define PREVIEW_HEIGHT 420
+#define LEAST_WIDTH 240
+#define LEAST_HEIGHT 180
 
 struct rp_panel {
   rp_host *host;
@@ -21,17 +27,16 @@ struct rp_panel {
   rp_set_func set;
   gpointer user;
   rp_scene scene;
-  rp_background estimate, draft;
-  rp_worker *worker; /* of the run that OK asked for */
-  guchar *draft_pixels;
-  guint draft_timer;
-  gboolean setting;   /* the panel itself is moving the controls */
-  gboolean cancelled; /* of the run */
-  GtkWidget *box, *area, *row, *shows[SHOWS], *estimate_button, *status, *progress;
+  rp_background estimate;
+  rp_draft draft;
+  rp_watch watch;   /* of the run that OK asks for */
+  gboolean setting; /* the panel itself is moving the controls */
+  gboolean refused; /* why is what the panel says */
+  GtkWidget *box, *area, *row, *controls, *shows[SHOWS], *estimate_button;
 };
 
 static void say(rp_panel *panel, const char *text) {
-  gtk_label_set_text(GTK_LABEL(panel->status), text);
+  gtk_label_set_text(GTK_LABEL(panel->watch.status), text);
 }
 
 /* What the user sees and can do with it. */
@@ -41,6 +46,10 @@ static void explain(rp_panel *panel) {
                  "would have to be magnified; grey: beyond the horizon."));
   else if (panel->scene.show == RP_SHOW_DRAFT && panel->scene.draft.pixels)
     say(panel, _("Draft: the real fill at the preview's size."));
+  else if (rp_scene_is_beyond(&panel->scene))
+    say(panel,
+        _("The picture lies beyond the horizon of this plane, so nothing can be filled. Choose "
+          "a smaller slant."));
   else
     say(panel, _("Drag the horizon, its handles or the grid to lay the plane on the picture."));
 }
@@ -51,65 +60,13 @@ static int choice(const rp_panel *panel, const char *key) {
 
 /* ------------------------------------------------------------------------------------ draft -- */
 
-static void on_draft(gpointer user, const rp_request *request) {
+static void on_draft(gpointer user, const char *text) {
   rp_panel *panel = user;
-  if (request->status == RECEDE_OK) {
-    rp_scene_set_draft(&panel->scene, panel->draft_pixels);
-    explain(panel);
-  } else {
-    char *text = rp_failure(request);
+  if (text)
     say(panel, text);
-    g_free(text);
-  }
+  else
+    explain(panel);
   gtk_widget_queue_draw(panel->area);
-}
-
-static recede_view proxy_view(const rp_proxy *proxy, guchar *pixels, int channels) {
-  return (recede_view){
-      pixels, (gsize)(proxy->width * channels), proxy->width, proxy->height, channels, RECEDE_U8};
-}
-
-/* Estimated angles are shown by the sliders, so the draft takes them from there. */
-static gboolean draft_params(const rp_panel *panel, recede_params *params) {
-  char *message = NULL;
-  gboolean good = rp_settings_params(panel->settings, params, &message);
-  g_free(message);
-  if (params->orientation == RECEDE_ORIENTATION_AUTO)
-    params->orientation = RECEDE_ORIENTATION_ANGLES;
-  params->quality = RECEDE_QUALITY_DRAFT;
-  return good;
-}
-
-static gboolean start_draft(gpointer data) {
-  rp_panel *panel = data;
-  rp_proxy *proxy = &panel->scene.proxy;
-  rp_request request = {.run = RP_RUN_FILL, .threads = rp_host_threads()};
-  panel->draft_timer = 0;
-  if (panel->scene.show != RP_SHOW_DRAFT || !draft_params(panel, &request.params))
-    return G_SOURCE_REMOVE;
-  request.image = proxy_view(proxy, proxy->rgba, 4);
-  request.mask = proxy_view(proxy, proxy->mask, 1);
-  if (proxy->source) request.source = proxy_view(proxy, proxy->source, 1);
-  rp_background_stop(&panel->draft);
-  if (!panel->draft_pixels)
-    panel->draft_pixels = g_malloc((gsize)proxy->width * (gsize)proxy->height * 4);
-  request.result = proxy_view(proxy, panel->draft_pixels, 4);
-  say(panel, _("Making a draft…"));
-  rp_background_start(&panel->draft, &request);
-  return G_SOURCE_REMOVE;
-}
-
-static void stop_draft(rp_panel *panel) {
-  if (panel->draft_timer) g_source_remove(panel->draft_timer);
-  panel->draft_timer = 0;
-  rp_background_stop(&panel->draft);
-}
-
-static void renew_draft(rp_panel *panel) {
-  stop_draft(panel);
-  rp_scene_set_draft(&panel->scene, NULL);
-  if (panel->scene.show == RP_SHOW_DRAFT)
-    panel->draft_timer = g_timeout_add(DRAFT_AFTER_MS, start_draft, panel);
 }
 
 /* --------------------------------------------------------------------------------- estimate -- */
@@ -123,18 +80,25 @@ static void set_values(rp_panel *panel, double slant_deg, double tilt_deg) {
 
 static void show_plane(rp_panel *panel) {
   gboolean frontal = choice(panel, "orientation") == RECEDE_ORIENTATION_FRONTAL;
+  gboolean was_beyond = rp_scene_is_beyond(&panel->scene);
   rp_scene_set_angles(&panel->scene, frontal ? 0 : rp_settings_get(panel->settings, "slant"),
                       frontal ? 0 : rp_settings_get(panel->settings, "tilt"),
                       rp_settings_get(panel->settings, "fov"));
-  renew_draft(panel);
+  if (rp_scene_is_beyond(&panel->scene) != was_beyond) explain(panel);
+  rp_draft_renew(&panel->draft);
   gtk_widget_queue_draw(panel->area);
+}
+
+static void stop_estimate(rp_panel *panel) {
+  if (panel->estimate.worker) explain(panel);
+  rp_background_stop(&panel->estimate);
+  gtk_widget_set_sensitive(panel->estimate_button, TRUE);
 }
 
 /* Whoever sets an angle by hand means it. */
 static void take_angles(rp_panel *panel) {
   if (choice(panel, "orientation") == RECEDE_ORIENTATION_ANGLES) return;
-  rp_background_stop(&panel->estimate);
-  gtk_widget_set_sensitive(panel->estimate_button, TRUE);
+  stop_estimate(panel);
   panel->setting = TRUE;
   panel->set(panel->user, "orientation", RECEDE_ORIENTATION_ANGLES);
   panel->setting = FALSE;
@@ -186,6 +150,12 @@ static void start_estimate(rp_panel *panel) {
   rp_background_start(&panel->estimate, &request);
 }
 
+/* When what it depends on has changed. */
+static void renew_estimate(rp_panel *panel) {
+  stop_estimate(panel);
+  if (choice(panel, "orientation") == RECEDE_ORIENTATION_AUTO) start_estimate(panel);
+}
+
 static void on_estimate_clicked(GtkButton *button, gpointer user) {
   rp_panel *panel = user;
   (void)button;
@@ -208,8 +178,8 @@ static void on_dragged(gpointer user, double slant_deg, double tilt_deg) {
 static void take_source(rp_panel *panel) {
   char *message = NULL;
   int id = choice(panel, "source");
-  stop_draft(panel);
-  rp_background_stop(&panel->estimate);
+  rp_draft_stop(&panel->draft);
+  stop_estimate(panel);
   rp_pixels_clear(&panel->picture->source);
   if (id >= 0 && !rp_read_source(panel->host, id, panel->picture, &message)) say(panel, message);
   rp_scene_set_source(&panel->scene, panel->picture);
@@ -220,9 +190,46 @@ void rp_panel_changed(rp_panel *panel, const char *key) {
   if (panel->setting) return;
   if (strcmp(key, "slant") == 0 || strcmp(key, "tilt") == 0) take_angles(panel);
   if (strcmp(key, "source") == 0) take_source(panel);
-  if (strcmp(key, "orientation") == 0 && choice(panel, key) == RECEDE_ORIENTATION_AUTO)
-    start_estimate(panel);
   show_plane(panel);
+  if (strcmp(key, "orientation") == 0 || strcmp(key, "source") == 0 || strcmp(key, "fov") == 0)
+    renew_estimate(panel);
+}
+
+void rp_panel_changed_all(rp_panel *panel) {
+  explain(panel);
+  if (panel->settings->procedure == RP_FILL) take_source(panel);
+  show_plane(panel);
+  renew_estimate(panel);
+}
+
+/* The scene is new. */
+static void show_picture(rp_panel *panel) {
+  if (panel->settings->procedure == RP_SYNTHESIZE) rp_scene_make_exemplar(&panel->scene);
+  rp_panel_changed_all(panel);
+}
+
+/* The user works on while the dialog is open: selects something else, moves or crops the layer. Why
+ * it cannot be filled now; NULL: it can. */
+static const char *read_anew(rp_panel *panel) {
+  rp_procedure procedure = panel->settings->procedure;
+  rp_picture picture;
+  rp_scene scene;
+  if (rp_is_as_read(panel->host, procedure, panel->picture)) return NULL;
+  const char *text = rp_read(panel->host, procedure, &picture);
+  if (text) return text;
+  if (!rp_scene_new(&picture, PROXY_LONGEST_PX, &scene)) {
+    rp_picture_clear(&picture);
+    return rp_no_memory();
+  }
+  rp_draft_clear(&panel->draft);
+  stop_estimate(panel);
+  rp_picture_clear(panel->picture);
+  *panel->picture = picture;
+  scene.show = panel->scene.show;
+  rp_scene_clear(&panel->scene);
+  panel->scene = scene;
+  show_picture(panel);
+  return NULL;
 }
 
 static void on_show(GtkToggleButton *button, gpointer user) {
@@ -232,7 +239,8 @@ static void on_show(GtkToggleButton *button, gpointer user) {
     if (panel->shows[i] == GTK_WIDGET(button)) panel->scene.show = (rp_show)i;
   panel->scene.shade_is_old = TRUE;
   explain(panel);
-  if (panel->scene.show == RP_SHOW_DRAFT && !panel->scene.draft.pixels) renew_draft(panel);
+  if (panel->scene.show == RP_SHOW_DRAFT && !panel->scene.draft.pixels)
+    rp_draft_renew(&panel->draft);
   gtk_widget_queue_draw(panel->area);
 }
 
@@ -256,12 +264,12 @@ static GtkWidget *show_row(rp_panel *panel) {
   return row;
 }
 
-/* Two lines are kept free for it, so that nothing jumps. */
-static GtkWidget *status_line(rp_panel *panel) {
-  panel->status = rp_ui_paragraph();
-  gtk_widget_set_size_request(panel->status, 480, 40);
-  atk_object_set_name(gtk_widget_get_accessible(panel->status), _("Status"));
-  return panel->status;
+/* Three lines are kept free for it, so that nothing jumps. */
+static GtkWidget *status_lines(rp_panel *panel) {
+  GtkWidget *lines = rp_ui_paragraph(&panel->watch.status);
+  gtk_widget_set_size_request(lines, LEAST_WIDTH, 54);
+  atk_object_set_name(gtk_widget_get_accessible(panel->watch.status), _("Status"));
+  return lines;
 }
 
 static void build(rp_panel *panel) {
@@ -270,9 +278,9 @@ static void build(rp_panel *panel) {
   gtk_box_pack_start(GTK_BOX(panel->box), panel->area, TRUE, TRUE, 0);
   panel->row = show_row(panel);
   gtk_box_pack_start(GTK_BOX(panel->box), panel->row, FALSE, FALSE, 0);
-  gtk_box_pack_start(GTK_BOX(panel->box), status_line(panel), FALSE, FALSE, 0);
-  panel->progress = gtk_progress_bar_new();
-  gtk_box_pack_start(GTK_BOX(panel->box), panel->progress, FALSE, FALSE, 0);
+  gtk_box_pack_start(GTK_BOX(panel->box), status_lines(panel), FALSE, FALSE, 0);
+  panel->watch.progress = gtk_progress_bar_new();
+  gtk_box_pack_start(GTK_BOX(panel->box), panel->watch.progress, FALSE, FALSE, 0);
   gtk_widget_show_all(panel->box);
 }
 
@@ -282,98 +290,73 @@ rp_panel *rp_panel_new(rp_host *host, rp_settings *settings, rp_picture *picture
   *panel =
       (rp_panel){.host = host, .settings = settings, .picture = picture, .set = set, .user = user};
   panel->estimate = (rp_background){.done = on_estimate, .user = panel};
-  panel->draft = (rp_background){.done = on_draft, .user = panel};
+  panel->draft =
+      (rp_draft){.settings = settings, .scene = &panel->scene, .told = on_draft, .user = panel};
   if (!rp_scene_new(picture, PROXY_LONGEST_PX, &panel->scene)) {
     rp_panel_free(panel);
     return NULL;
   }
   build(panel);
-  if (settings->procedure == RP_FILL)
-    take_source(panel);
-  else
-    rp_scene_make_exemplar(&panel->scene);
-  show_plane(panel);
-  explain(panel);
-  if (choice(panel, "orientation") == RECEDE_ORIENTATION_AUTO) start_estimate(panel);
+  show_picture(panel);
   return panel;
 }
 
 GtkWidget *rp_panel_widget(rp_panel *panel) { return panel->box; }
 
+static gboolean can_fill(rp_panel *panel, gboolean result_chosen) {
+  const char *text = rp_refusal(panel->host, panel->settings, result_chosen);
+  if (!text) text = read_anew(panel);
+  if (text)
+    say(panel, text);
+  else if (panel->refused && !panel->estimate.worker)
+    explain(panel);
+  panel->refused = text != NULL;
+  return !panel->refused;
+}
+
+/* Back from the image's window. */
+static gboolean on_focus(GtkWidget *dialog, GdkEvent *event, gpointer user) {
+  rp_panel *panel = user;
+  (void)dialog, (void)event;
+  if (!panel->watch.worker) can_fill(panel, FALSE);
+  return FALSE;
+}
+
+void rp_panel_attach(rp_panel *panel, GtkWidget *dialog, GtkWidget *controls) {
+  panel->watch.dialog = dialog;
+  panel->controls = controls;
+  gtk_widget_set_size_request(panel->area, PREVIEW_WIDTH, PREVIEW_HEIGHT);
+  rp_ui_open_so_large(dialog);
+  gtk_widget_set_size_request(panel->area, LEAST_WIDTH, LEAST_HEIGHT);
+  g_signal_connect(dialog, "focus-in-event", G_CALLBACK(on_focus), panel);
+}
+
 void rp_panel_free(rp_panel *panel) {
-  stop_draft(panel);
+  rp_draft_clear(&panel->draft);
   rp_background_stop(&panel->estimate);
   rp_scene_clear(&panel->scene);
-  g_free(panel->draft_pixels);
   g_free(panel);
 }
 
 /* -------------------------------------------------------------------------------------- run -- */
 
-static gboolean show_state(gpointer user) {
-  rp_panel *panel = user;
-  rp_state state = rp_worker_state(panel->worker);
-  const char *label = rp_stage_label(state.stage);
-  if (strcmp(label, gtk_label_get_text(GTK_LABEL(panel->status))) != 0) say(panel, label);
-  gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(panel->progress), CLAMP(state.fraction, 0, 1));
-  return G_SOURCE_CONTINUE;
-}
-
-/* The dialog lives on meanwhile. */
-static void run_with_dialog(rp_request *request, gpointer user) {
-  rp_panel *panel = user;
-  panel->worker = rp_worker_start(request);
-  show_state(panel);
-  guint ticks = g_timeout_add(RP_TELL_EVERY_MS, show_state, panel);
-  while (!rp_worker_state(panel->worker).finished) {
-    gtk_main_iteration(); /* waits for the next tick at the longest */
-    if (panel->cancelled) rp_worker_cancel(panel->worker);
-  }
-  g_source_remove(ticks);
-  rp_worker_finish(&panel->worker);
-}
-
-static void on_response(GtkDialog *dialog, gint response, gpointer user) {
-  (void)dialog;
-  if (response == GTK_RESPONSE_CANCEL || response == GTK_RESPONSE_DELETE_EVENT)
-    ((rp_panel *)user)->cancelled = TRUE;
-}
-
-static gboolean keep_open(GtkWidget *dialog, GdkEvent *event, gpointer user) {
-  (void)dialog, (void)event;
-  ((rp_panel *)user)->cancelled = TRUE;
-  return TRUE;
-}
-
-static rp_outcome run(rp_panel *panel, GtkWidget *dialog, rp_request *request, char **message) {
-  gulong response = g_signal_connect(dialog, "response", G_CALLBACK(on_response), panel);
-  gulong closing = g_signal_connect(dialog, "delete-event", G_CALLBACK(keep_open), panel);
-  panel->cancelled = FALSE;
-  rp_outcome outcome = rp_compute(panel->host, panel->settings, panel->picture, request,
-                                  run_with_dialog, panel, message);
-  g_signal_handler_disconnect(dialog, response);
-  g_signal_handler_disconnect(dialog, closing);
-  return outcome;
-}
-
-static void set_sensitive(rp_panel *panel, GtkWidget *dialog, GtkWidget *controls,
-                          gboolean sensitive) {
+static void set_sensitive(rp_panel *panel, gboolean sensitive) {
   gtk_widget_set_sensitive(panel->area, sensitive);
   gtk_widget_set_sensitive(panel->row, sensitive);
-  gtk_widget_set_sensitive(controls, sensitive);
-  gtk_dialog_set_response_sensitive(GTK_DIALOG(dialog), GTK_RESPONSE_OK, sensitive);
+  gtk_widget_set_sensitive(panel->controls, sensitive);
+  gtk_dialog_set_response_sensitive(GTK_DIALOG(panel->watch.dialog), GTK_RESPONSE_OK, sensitive);
+  gtk_dialog_set_response_sensitive(GTK_DIALOG(panel->watch.dialog), RP_RESPONSE_RESET, sensitive);
 }
 
-gboolean rp_panel_compute(rp_panel *panel, GtkWidget *dialog, GtkWidget *controls,
-                          rp_request *request) {
+gboolean rp_panel_compute(rp_panel *panel, rp_request *request) {
   char *message = NULL;
-  stop_draft(panel);
-  rp_background_stop(&panel->estimate);
-  gtk_widget_set_sensitive(panel->estimate_button, TRUE);
-  set_sensitive(panel, dialog, controls, FALSE);
-  rp_outcome outcome = run(panel, dialog, request, &message);
-  gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(panel->progress), 0);
-  set_sensitive(panel, dialog, controls, TRUE);
+  if (!can_fill(panel, TRUE)) return FALSE;
+  rp_draft_stop(&panel->draft);
+  stop_estimate(panel);
+  set_sensitive(panel, FALSE);
+  rp_outcome outcome = rp_compute(panel->host, panel->settings, panel->picture, request,
+                                  rp_watch_run, &panel->watch, &message);
+  set_sensitive(panel, TRUE);
   if (outcome == RP_CANCELLED) say(panel, _("Stopped; the picture has not been changed."));
   if (message) say(panel, message);
   g_free(message);

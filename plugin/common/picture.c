@@ -3,11 +3,12 @@
 
 #include <string.h>
 
-static gboolean read_mask(rp_picture *picture, GeglBuffer *selection) {
-  GeglRectangle in_image = picture->area;
-  in_image.x += picture->offset_x;
-  in_image.y += picture->offset_y;
-  return rp_pixels_read_mask(selection, &in_image, &picture->mask);
+static gboolean read_mask(GeglBuffer *selection, const GeglRectangle *area, int offset_x,
+                          int offset_y, rp_pixels *mask) {
+  GeglRectangle in_image = *area;
+  in_image.x += offset_x;
+  in_image.y += offset_y;
+  return rp_pixels_read_mask(selection, &in_image, mask);
 }
 
 rp_read_status rp_picture_read(rp_picture *picture, GeglBuffer *drawable, GeglBuffer *selection,
@@ -18,7 +19,7 @@ rp_read_status rp_picture_read(rp_picture *picture, GeglBuffer *drawable, GeglBu
   picture->offset_y = offset_y;
   picture->box = *GEGL_RECTANGLE(0, 0, area->width, area->height);
   if (selection) {
-    if (!read_mask(picture, selection)) return RP_READ_NO_MEMORY;
+    if (!read_mask(selection, area, offset_x, offset_y, &picture->mask)) return RP_READ_NO_MEMORY;
     if (!rp_mask_bounds(&picture->mask.view, &picture->box)) return RP_READ_OUTSIDE;
   }
   return rp_pixels_read(drawable, area, &picture->image) ? RP_READ_OK : RP_READ_NO_MEMORY;
@@ -31,6 +32,19 @@ gboolean rp_picture_read_source(rp_picture *picture, GeglBuffer *buffer, int off
   there.y += picture->offset_y - offset_y;
   rp_pixels_clear(&picture->source);
   return rp_pixels_read_source(buffer, &there, &picture->source);
+}
+
+gboolean rp_picture_is_masked_by(const rp_picture *picture, GeglBuffer *selection, int offset_x,
+                                 int offset_y) {
+  const recede_view *mask = &picture->mask.view;
+  rp_pixels now;
+  if (!selection || !mask->data) return !selection && !mask->data;
+  gboolean same =
+      read_mask(selection, &picture->area, offset_x, offset_y, &now) &&
+      now.view.type == mask->type &&
+      memcmp(now.view.data, mask->data, (gsize)mask->height * (gsize)mask->stride_bytes) == 0;
+  rp_pixels_clear(&now);
+  return same;
 }
 
 void rp_picture_clear(rp_picture *picture) {

@@ -29,6 +29,9 @@ rp_read_status rp_picture_read(rp_picture *picture, GeglBuffer *drawable, GeglBu
 /* The light parts of another drawable, whose offsets are given, are what may be copied from. */
 gboolean rp_picture_read_source(rp_picture *picture, GeglBuffer *buffer, int offset_x,
                                 int offset_y);
+/* Whether the mask is what selection has where area lies now. */
+gboolean rp_picture_is_masked_by(const rp_picture *picture, GeglBuffer *selection, int offset_x,
+                                 int offset_y);
 void rp_picture_clear(rp_picture *picture);
 
 /* Make room for the result and fill the request. FALSE: no memory.

@@ -4,8 +4,6 @@
 #include "intl.h"
 
 #define REACH_PX 10 /* of a handle, on the screen */
-#define SMALLEST_WIDTH 600
-#define SMALLEST_HEIGHT 420
 
 typedef struct {
   rp_painter painter;
@@ -72,7 +70,6 @@ GtkWidget *rp_preview_new(rp_scene *scene, rp_angles_func dragged, gpointer user
   GtkWidget *area = gtk_drawing_area_new();
   rp_ui_on_draw(area, &p->painter);
   g_object_set_data_full(G_OBJECT(area), "recede-preview", p, g_free);
-  gtk_widget_set_size_request(area, SMALLEST_WIDTH, SMALLEST_HEIGHT);
   gtk_widget_add_events(area, GDK_BUTTON_PRESS_MASK | GDK_BUTTON_RELEASE_MASK |
                                   GDK_POINTER_MOTION_MASK | GDK_POINTER_MOTION_HINT_MASK);
   g_signal_connect(area, "button-press-event", G_CALLBACK(on_press), p);

@@ -8,6 +8,16 @@ static gboolean into_new_layer(const rp_settings *settings) {
   return settings->procedure == RP_FILL && (int)rp_settings_get(settings, "result") == RP_NEW_LAYER;
 }
 
+const char *rp_refusal(const rp_host *host, const rp_settings *settings, gboolean result_chosen) {
+  if (!rp_host_is_there(host)) return rp_layer_gone();
+  rp_target target = rp_host_target(host);
+  gboolean fill = settings->procedure == RP_FILL;
+  gboolean writes = fill && result_chosen;
+  const char *text = rp_target_refusal(&target, writes, writes && into_new_layer(settings));
+  if (text) return text;
+  return fill && !rp_host_has_selection(host) ? rp_no_selection() : NULL;
+}
+
 static gboolean make_request(const rp_settings *settings, const recede_params *params,
                              rp_picture *picture, rp_request *request) {
   if (settings->procedure == RP_FILL)
@@ -23,6 +33,16 @@ static gboolean take_source(const rp_host *host, const rp_settings *settings, rp
   return id < 0 || rp_read_source(host, id, picture, message);
 }
 
+/* The user goes on working while a fill runs. What is selected then does not matter. */
+static char *cannot_write(const rp_host *host, const rp_settings *settings,
+                          const rp_picture *picture) {
+  if (!rp_host_is_there(host)) return g_strdup(rp_layer_gone());
+  if (settings->procedure == RP_SYNTHESIZE) return NULL;
+  rp_target target = rp_host_target(host);
+  const char *text = rp_target_refusal(&target, TRUE, into_new_layer(settings));
+  return text ? g_strdup(text) : rp_misfit(host, picture);
+}
+
 rp_outcome rp_compute(const rp_host *host, const rp_settings *settings, rp_picture *picture,
                       rp_request *request, rp_runner run_it, gpointer user, char **message) {
   recede_params params;
@@ -34,29 +54,10 @@ rp_outcome rp_compute(const rp_host *host, const rp_settings *settings, rp_pictu
   }
   request->threads = rp_host_threads();
   run_it(request, user);
-  if (request->status == RECEDE_OK) return RP_DONE;
   if (request->status == RECEDE_CANCELLED) return RP_CANCELLED;
-  *message = rp_failure(request);
-  return RP_FAILED;
-}
-
-static const char *refusal(const rp_host *host, const rp_settings *settings, gboolean with_dialog) {
-  rp_target target = rp_host_target(host);
-  gboolean fill = settings->procedure == RP_FILL;
-  /* The dialog's user may still choose a new layer. */
-  gboolean writes = fill && !with_dialog;
-  const char *text =
-      rp_target_refusal(&target, writes, fill && !with_dialog && into_new_layer(settings));
-  if (text) return text;
-  return fill && !rp_host_has_selection(host) ? rp_no_selection() : NULL;
-}
-
-static const char *read_picture(const rp_host *host, rp_procedure procedure, rp_picture *picture) {
-  switch (rp_read(host, procedure, picture)) {
-    case RP_READ_OK: return NULL;
-    case RP_READ_OUTSIDE: return rp_selection_outside();
-    default: return rp_no_memory();
-  }
+  *message =
+      request->status == RECEDE_OK ? cannot_write(host, settings, picture) : rp_failure(request);
+  return *message ? RP_FAILED : RP_DONE;
 }
 
 static const char *write_result(rp_host *host, const rp_settings *settings,
@@ -96,7 +97,7 @@ static rp_outcome fail(const char *text, char **message) {
 static rp_outcome run(rp_host *host, rp_settings *settings, gboolean with_dialog,
                       rp_picture *picture, char **message) {
   rp_request request;
-  const char *text = read_picture(host, settings->procedure, picture);
+  const char *text = rp_read(host, settings->procedure, picture);
   if (text) return fail(text, message);
   rp_outcome outcome = obtain_result(host, settings, with_dialog, picture, &request, message);
   if (outcome != RP_DONE) return outcome;
@@ -114,7 +115,8 @@ rp_outcome rp_procedure_run(rp_host *host, rp_settings *settings, gboolean with_
   recede_params params;
   *message = NULL;
   if (!rp_settings_params(settings, &params, message)) return RP_CALLING_ERROR;
-  const char *text = refusal(host, settings, with_dialog);
+  /* The dialog's user may still choose a new layer. */
+  const char *text = rp_refusal(host, settings, !with_dialog);
   if (text) return fail(text, message);
   rp_outcome outcome = run(host, settings, with_dialog, &picture, message);
   rp_picture_clear(&picture);

@@ -41,6 +41,12 @@ gboolean rp_scene_set_angles(rp_scene *scene, double slant_deg, double tilt_deg,
   return TRUE;
 }
 
+gboolean rp_scene_is_beyond(const rp_scene *scene) {
+  double ends[4], quad[8];
+  return !rp_grid_horizon(&scene->plane, ends) &&
+         !recede_plane_quad(&scene->plane, scene->centre_x, scene->centre_y, 1, quad);
+}
+
 void rp_scene_make_exemplar(rp_scene *scene) {
   rp_proxy *proxy = &scene->proxy;
   g_free(proxy->source);

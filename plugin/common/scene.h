@@ -43,6 +43,8 @@ gboolean rp_scene_new(const rp_picture *picture, int longest, rp_scene *scene);
 void rp_scene_clear(rp_scene *scene);
 /* FALSE, and the scene stays as it is: these angles make no plane. */
 gboolean rp_scene_set_angles(rp_scene *scene, double slant_deg, double tilt_deg, double fov_deg);
+/* Nothing of the plane is in sight: the picture lies beyond the horizon. */
+gboolean rp_scene_is_beyond(const rp_scene *scene);
 /* What was read as the mask is the exemplar: it is copied from, nothing is filled. */
 void rp_scene_make_exemplar(rp_scene *scene);
 /* Angles that put a horizon in sight above the hole, for the user to drag from there; FALSE: one is

@@ -13,8 +13,12 @@ typedef struct {
 
 /* Whenever the area is to be drawn, painter draws it; it must outlive the area. */
 void rp_ui_on_draw(GtkWidget *area, rp_painter *painter);
-/* A label of several lines that starts at the top left. */
-GtkWidget *rp_ui_paragraph(void);
+/* Room for some lines of text, from the top left, broken where its width ends; *label takes the
+ * text.
+ */
+GtkWidget *rp_ui_paragraph(GtkWidget **label);
+/* The window opens as large as what is in it asks for now, or as the screen has room for. */
+void rp_ui_open_so_large(GtkWidget *window);
 void rp_ui_set_cursor(GtkWidget *widget, GdkCursorType type);
 
 #endif

@@ -8,7 +8,6 @@
 #include "host.h"
 #include "presets.h"
 
-#define RESPONSE_RESET 1
 #define SCALE_WIDTH 160
 #define SPIN_DIGITS 6
 
@@ -17,6 +16,7 @@ typedef struct {
   rp_settings *settings;
   rp_panel *panel;
   GtkWidget *dialog, *table;
+  gboolean showing; /* all settings are being shown: no control's change is told */
   GObject *controls[RP_MAX_ARGUMENTS]; /* adjustments of numbers, combo boxes of choices */
 } dialog;
 
@@ -28,7 +28,7 @@ static const rp_argument *row_of(const dialog *d, int index) {
 static void changed(dialog *d, int index, double value) {
   if (d->settings->values[index] == value) return;
   d->settings->values[index] = value;
-  if (d->panel) rp_panel_changed(d->panel, row_of(d, index)->key);
+  if (d->panel && !d->showing) rp_panel_changed(d->panel, row_of(d, index)->key);
 }
 
 static int index_of(const dialog *d, const void *control) {
@@ -63,8 +63,11 @@ static void show_settings(gpointer user, const rp_settings *settings) {
   dialog *d = user;
   int count;
   rp_arguments(settings->procedure, &count);
+  d->showing = TRUE;
   for (int i = 0; i < count; i++)
     if (row_of(d, i)->type != RP_DRAWABLE) set_control(d, i, settings->values[i]);
+  d->showing = FALSE;
+  rp_panel_changed_all(d->panel);
 }
 
 /* --------------------------------------------------------------------------------- controls -- */
@@ -165,10 +168,10 @@ static void build_dialog(dialog *d) {
   const char *name = rp_procedure_name(d->settings->procedure);
   d->dialog = gimp_dialog_new(
       d->settings->procedure == RP_FILL ? _("Perspective Fill") : _("Perspective Texture"),
-      "recede", NULL, 0, gimp_standard_help_func, name, _("_Reset"), RESPONSE_RESET, _("_Cancel"),
-      GTK_RESPONSE_CANCEL, _("_OK"), GTK_RESPONSE_OK, NULL);
+      "recede", NULL, 0, gimp_standard_help_func, name, _("_Reset"), RP_RESPONSE_RESET,
+      _("_Cancel"), GTK_RESPONSE_CANCEL, _("_OK"), GTK_RESPONSE_OK, NULL);
   gtk_dialog_set_default_response(GTK_DIALOG(d->dialog), GTK_RESPONSE_OK);
-  gtk_dialog_set_alternative_button_order(GTK_DIALOG(d->dialog), GTK_RESPONSE_OK, RESPONSE_RESET,
+  gtk_dialog_set_alternative_button_order(GTK_DIALOG(d->dialog), GTK_RESPONSE_OK, RP_RESPONSE_RESET,
                                           GTK_RESPONSE_CANCEL, -1);
   gimp_window_set_transient(GTK_WINDOW(d->dialog));
 }
@@ -194,14 +197,14 @@ static void reset(dialog *d) {
   show_settings(d, &defaults);
 }
 
-static gboolean ask(dialog *d, GtkWidget *controls, rp_request *request) {
+static gboolean ask(dialog *d, rp_request *request) {
   for (;;) {
     gint response = gimp_dialog_run(GIMP_DIALOG(d->dialog));
-    if (response == RESPONSE_RESET)
+    if (response == RP_RESPONSE_RESET)
       reset(d);
     else if (response != GTK_RESPONSE_OK)
       return FALSE;
-    else if (rp_panel_compute(d->panel, d->dialog, controls, request))
+    else if (rp_panel_compute(d->panel, request))
       return TRUE;
   }
 }
@@ -225,8 +228,9 @@ gboolean rp_host_dialog(rp_host *host, rp_settings *settings, rp_picture *pictur
   gtk_box_pack_start(GTK_BOX(gtk_dialog_get_content_area(GTK_DIALOG(d.dialog))), row, TRUE, TRUE,
                      0);
   gtk_widget_show(row);
+  rp_panel_attach(d.panel, d.dialog, controls);
   gtk_widget_show(d.dialog);
-  gboolean done = ask(&d, controls, request);
+  gboolean done = ask(&d, request);
   rp_panel_free(d.panel);
   gtk_widget_destroy(d.dialog);
   return done;

@@ -5,12 +5,23 @@
 
 #include "../common/intl.h"
 
+gboolean rp_host_is_there(const rp_host *host) {
+  return gimp_image_is_valid(host->image) && gimp_item_is_valid(host->drawable);
+}
+
+/* A group's lock holds for all that lies in it. */
+static gboolean is_locked(gint32 item) {
+  for (; item >= 0; item = gimp_item_get_parent(item))
+    if (gimp_item_get_lock_content(item)) return TRUE;
+  return FALSE;
+}
+
 rp_target rp_host_target(const rp_host *host) {
   gint32 item = host->drawable;
   gboolean is_layer = gimp_item_is_layer(item);
   return (rp_target){.group = gimp_item_is_group(item),
                      .indexed = gimp_drawable_is_indexed(item),
-                     .locked = gimp_item_get_lock_content(item),
+                     .locked = is_locked(item),
                      .text = gimp_item_is_text_layer(item),
                      .floating = is_layer && gimp_layer_is_floating_sel(item),
                      .is_layer = is_layer};
@@ -57,6 +68,24 @@ GeglBuffer *rp_host_open_shadow(const rp_host *host) {
 
 void rp_host_merge_shadow(const rp_host *host) { gimp_drawable_merge_shadow(host->drawable, TRUE); }
 
+void rp_host_select_nothing(rp_host *host) {
+  gimp_image_undo_group_start(host->image);
+  host->selected =
+      rp_host_has_selection(host) ? gimp_channel_copy(gimp_image_get_selection(host->image)) : -1;
+  gimp_selection_none(host->image);
+}
+
+/* The copy is in no image, so that nothing shows in the Channels dialog: combining is what takes
+ * one that is not. */
+void rp_host_select_again(rp_host *host) {
+  if (host->selected >= 0) {
+    gimp_channel_combine_masks(gimp_image_get_selection(host->image), host->selected,
+                               GIMP_CHANNEL_OP_ADD, 0, 0);
+    gimp_item_delete(host->selected);
+  }
+  gimp_image_undo_group_end(host->image);
+}
+
 void rp_host_updated(const rp_host *host, const GeglRectangle *box) {
   gimp_drawable_update(host->drawable, box->x, box->y, box->width, box->height);
 }
@@ -67,13 +96,15 @@ static GimpImageType type_with_alpha(gint32 drawable) {
 
 gboolean rp_host_write_new_layer(rp_host *host, const rp_picture *picture) {
   const GeglRectangle *box = &picture->box;
+  gint x, y;
   gint32 layer = gimp_layer_new(host->image, _("Perspective Fill"), box->width, box->height,
                                 type_with_alpha(host->drawable), 100, GIMP_LAYER_MODE_NORMAL);
   if (layer < 0) return FALSE;
   GeglBuffer *buffer = gimp_drawable_get_buffer(layer);
   rp_pixels_write_layer(buffer, &picture->result, &picture->mask.view, box);
   g_object_unref(buffer);
-  gimp_layer_set_offsets(layer, picture->offset_x + box->x, picture->offset_y + box->y);
+  gimp_drawable_offsets(host->drawable, &x, &y);
+  gimp_layer_set_offsets(layer, x + box->x, y + box->y);
   return gimp_image_insert_layer(host->image, layer, gimp_item_get_parent(host->drawable),
                                  gimp_image_get_item_position(host->image, host->drawable));
 }

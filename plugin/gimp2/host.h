@@ -9,6 +9,7 @@
 struct rp_host {
   gint32 image, drawable;
   gint32 new_image; /* made by synthesize, else -1 */
+  gint32 selected;  /* what was selected before rp_host_select_nothing(); -1: nothing */
 };
 
 #endif

@@ -111,11 +111,12 @@ static gboolean take_arguments(rp_settings *settings, GimpRunMode mode, int give
   return TRUE;
 }
 
-/* A source chosen last time may belong to another image, or be gone. */
-static void forget_lost_source(rp_settings *settings, gint32 image) {
+/* A source chosen last time may belong to another image, be gone, or be what is filled now. */
+static void forget_lost_source(rp_settings *settings, const rp_host *host) {
   if (settings->procedure != RP_FILL) return;
   gint32 source = (gint32)rp_settings_get(settings, "source");
-  if (source >= 0 && (!gimp_item_is_valid(source) || gimp_item_get_image(source) != image))
+  if (source >= 0 && (source == host->drawable || !gimp_item_is_valid(source) ||
+                      gimp_item_get_image(source) != host->image))
     rp_settings_set(settings, "source", -1);
 }
 
@@ -144,7 +145,7 @@ static rp_outcome run_with(rp_host *host, rp_procedure procedure, GimpRunMode mo
     *message = g_strdup(_("Wrong number of arguments."));
     return RP_CALLING_ERROR;
   }
-  if (mode != GIMP_RUN_NONINTERACTIVE) forget_lost_source(&settings, host->image);
+  if (mode != GIMP_RUN_NONINTERACTIVE) forget_lost_source(&settings, host);
   rp_outcome outcome = rp_procedure_run(host, &settings, mode == GIMP_RUN_INTERACTIVE, message);
   if (outcome == RP_DONE) finish(host, &settings, mode);
   return outcome;
@@ -154,7 +155,7 @@ static void run(const gchar *name, gint given, const GimpParam *params, gint *re
                 GimpParam **values) {
   static GimpParam result[2];
   static char *message; /* GIMP reads it after we return */
-  rp_host host = {params[1].data.d_image, params[2].data.d_drawable, -1};
+  rp_host host = {params[1].data.d_image, params[2].data.d_drawable, -1, -1};
   rp_translations_start(gimp_get_progname());
   gegl_init(NULL, NULL);
   rp_procedure procedure = strcmp(name, rp_procedure_name(RP_FILL)) == 0 ? RP_FILL : RP_SYNTHESIZE;

@@ -22,11 +22,38 @@ void rp_ui_on_draw(GtkWidget *area, rp_painter *painter) {
   g_signal_connect(area, "expose-event", G_CALLBACK(on_expose), painter);
 }
 
-GtkWidget *rp_ui_paragraph(void) {
-  GtkWidget *label = gtk_label_new("\n");
-  gtk_label_set_line_wrap(GTK_LABEL(label), TRUE);
-  gtk_misc_set_alignment(GTK_MISC(label), 0, 0);
-  return label;
+static void on_width(GtkWidget *layout, GtkAllocation *space, gpointer label) {
+  (void)layout;
+  gtk_widget_set_size_request(label, space->width, -1);
+}
+
+/* A label breaks its lines at the width it asks for. In a layout it can ask for what there is, and
+ * the window can shrink again. */
+GtkWidget *rp_ui_paragraph(GtkWidget **label) {
+  GtkWidget *layout = gtk_layout_new(NULL, NULL);
+  *label = gtk_label_new("");
+  gtk_label_set_line_wrap(GTK_LABEL(*label), TRUE);
+  gtk_misc_set_alignment(GTK_MISC(*label), 0, 0);
+  gtk_layout_put(GTK_LAYOUT(layout), *label, 0, 0);
+  g_signal_connect(layout, "size-allocate", G_CALLBACK(on_width), *label);
+  return layout;
+}
+
+#define AROUND                                                                      \
+  60 /* px for the window's frame and the desktop's bars, which GTK 2 does not tell \
+      */
+
+void rp_ui_open_so_large(GtkWidget *window) {
+  GdkScreen *screen = gtk_widget_get_screen(window);
+  GtkRequisition size;
+  GdkRectangle monitor;
+  gtk_widget_size_request(window, &size);
+  for (int i = 0; i < gdk_screen_get_n_monitors(screen); i++) {
+    gdk_screen_get_monitor_geometry(screen, i, &monitor);
+    size.width = MIN(size.width, monitor.width - AROUND);
+    size.height = MIN(size.height, monitor.height - AROUND);
+  }
+  gtk_window_set_default_size(GTK_WINDOW(window), size.width, size.height);
 }
 
 void rp_ui_set_cursor(GtkWidget *widget, GdkCursorType type) {

@@ -1,6 +1,7 @@
 /* GIMP 3's dialog: GimpProcedureDialog's controls beside the shared panel. */
 #include <libgimp/gimp.h>
 #include <libgimp/gimpui.h>
+#include <string.h>
 
 #include "../common/intl.h"
 #include "../common/panel.h"
@@ -17,14 +18,21 @@ typedef struct {
 
 /* ---------------------------------------------------------------------------------- changes -- */
 
+/* Reset and Load set all values before they tell the first: then others than that one differ. */
 static void on_config(GObject *config, GParamSpec *spec, gpointer user) {
   dialog *d = user;
-  if (rp_settings_index(d->settings, spec->name) < 0) return;
+  rp_settings before = *d->settings;
+  int index = rp_settings_index(&before, spec->name);
   rp_settings_from_config(d->settings, GIMP_PROCEDURE_CONFIG(config));
-  if (d->source && g_str_equal(spec->name, "source"))
+  if (memcmp(&before, d->settings, sizeof before) == 0) return;
+  if (d->source)
     gimp_int_combo_box_set_active(GIMP_INT_COMBO_BOX(d->source),
                                   (gint)rp_settings_get(d->settings, "source"));
-  if (d->panel) rp_panel_changed(d->panel, spec->name);
+  if (index >= 0) before.values[index] = d->settings->values[index];
+  if (memcmp(&before, d->settings, sizeof before) == 0)
+    rp_panel_changed(d->panel, spec->name);
+  else
+    rp_panel_changed_all(d->panel);
 }
 
 static void set_by_key(gpointer user, const char *key, double value) {
@@ -110,20 +118,23 @@ static GtkWidget *build_controls(dialog *d) {
   return box;
 }
 
-static void lay_out(dialog *d) {
+static void lay_out(dialog *d, GtkWidget *controls) {
   GtkWidget *row = gimp_procedure_dialog_fill_box(d->dialog, "recede-row", "recede-controls", NULL);
   gtk_orientable_set_orientation(GTK_ORIENTABLE(row), GTK_ORIENTATION_HORIZONTAL);
   gtk_box_set_spacing(GTK_BOX(row), 12);
   GtkWidget *panel = rp_panel_widget(d->panel);
   gtk_box_pack_start(GTK_BOX(row), panel, TRUE, TRUE, 0);
   gtk_box_reorder_child(GTK_BOX(row), panel, 0);
+  /* What a larger dialog has more is the preview's. */
+  gtk_widget_set_hexpand(controls, FALSE);
+  gtk_box_set_child_packing(GTK_BOX(row), controls, FALSE, TRUE, 0, GTK_PACK_START);
   gimp_procedure_dialog_fill(d->dialog, "recede-row", NULL);
   gtk_widget_set_vexpand(row, TRUE);
 }
 
-static gboolean ask(dialog *d, GtkWidget *controls, rp_request *request) {
+static gboolean ask(dialog *d, rp_request *request) {
   while (gimp_procedure_dialog_run(d->dialog))
-    if (rp_panel_compute(d->panel, GTK_WIDGET(d->dialog), controls, request)) return TRUE;
+    if (rp_panel_compute(d->panel, request)) return TRUE;
   return FALSE;
 }
 
@@ -141,9 +152,10 @@ gboolean rp_host_dialog(rp_host *host, rp_settings *settings, rp_picture *pictur
     gtk_widget_destroy(GTK_WIDGET(d.dialog));
     return FALSE;
   }
-  lay_out(&d);
+  lay_out(&d, controls);
+  rp_panel_attach(d.panel, GTK_WIDGET(d.dialog), controls);
   gulong notify = g_signal_connect(host->config, "notify", G_CALLBACK(on_config), &d);
-  gboolean done = ask(&d, controls, request);
+  gboolean done = ask(&d, request);
   g_signal_handler_disconnect(host->config, notify);
   rp_panel_free(d.panel);
   gtk_widget_destroy(GTK_WIDGET(d.dialog));

@@ -11,7 +11,8 @@ struct rp_host {
   GimpProcedureConfig *config;
   GimpImage *image;
   GimpDrawable *drawable;
-  GimpImage *new_image; /* made by synthesize, else NULL */
+  GimpImage *new_image;  /* made by synthesize, else NULL */
+  GimpChannel *selected; /* what was selected before rp_host_select_nothing(); NULL: nothing */
 };
 
 #endif

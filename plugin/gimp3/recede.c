@@ -61,7 +61,7 @@ static GimpValueArray *answer(const rp_host *host, rp_outcome outcome, const cha
 
 static GimpValueArray *run(GimpProcedure *procedure, GimpRunMode mode, GimpImage *image,
                            GimpDrawable **drawables, GimpProcedureConfig *config, gpointer data) {
-  rp_host host = {procedure, config, image, drawables ? drawables[0] : NULL, NULL};
+  rp_host host = {procedure, config, image, drawables ? drawables[0] : NULL, NULL, NULL};
   rp_settings settings;
   char *message = NULL;
   gegl_init(NULL, NULL);

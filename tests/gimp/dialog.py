@@ -10,7 +10,9 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+import pyatspi
 from host import PRELUDE, Host, Tap
+from meanwhile import check_meanwhile
 from server import IMAGE, Server
 from window import Window, plain, wait_for, walk
 
@@ -21,6 +23,7 @@ SELECTION = (330, 380, 300, 130)
 SELECT = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE {} {} {} {})"
 
 
+ESTIMATE = "Estimate from the picture"
 FILL_MENU = ("Filters", "Enhance", "Perspective Fill")
 
 
@@ -80,6 +83,26 @@ class Dialog:
                                       and all(word in node.name for word in words)), None), 10)
         self.window.press(item)
 
+    def chosen(self, item):
+        """What the combo box that has this item shows."""
+        return next(node.name for node in walk(self.root) if node.getRoleName() == "combo box"
+                    and any(child.name == item for child in walk(node)))
+
+    def named(self, *names):
+        """Any node of the application so called, for menus that pop up."""
+        def look():
+            for application in self.window.applications():
+                for node in walk(application):
+                    if plain(node.name) in names and node.getRoleName() != "label":
+                        return node
+            return None
+        return wait_for(look, 10)
+
+    def reset(self):
+        self.window.press(self.named("Reset"))
+        if self.window.host.name == "3":
+            self.window.press(self.named("Reset to Factory Defaults"))
+
     def alive(self):
         return self.window.frame(self.path[-1], 1) is not None
 
@@ -103,6 +126,11 @@ def check_sliders(dialog):
                        f"{label} moves the preview")
     dialog.set("Tilt", 0)
     dialog.set("Field of view", FOV)
+    dialog.set("Slant", 179)
+    dialog.tap.case(dialog.says("lies beyond the horizon"), "a slant that shows nothing is said",
+                    dialog.status())
+    dialog.set("Slant", 78)
+    dialog.tap.case(dialog.says("Drag"), "and no more when the horizon is back", dialog.status())
     dialog.changes(lambda: dialog.toggle("Scale map"), "the scale map is shown")
     dialog.window.screenshot("scale-map")
     dialog.changes(lambda: dialog.toggle("Draft result"), "the draft is shown")
@@ -116,6 +144,19 @@ def check_estimate(dialog):
     dialog.press("Estimate")
     good = dialog.says("confidence", seconds=30)
     dialog.tap.case(good, "Estimate answers", dialog.status())
+    slant, orientation = dialog.value("Slant"), dialog.chosen(ESTIMATE)
+    dialog.set("Field of view", 100)
+    good = wait_for(lambda: abs(dialog.value("Slant") - slant) > .5, 20)
+    dialog.tap.case(good, "another field of view is estimated with",
+                    f"{dialog.value('Slant')} {dialog.status()}")
+    dialog.set("Slant", 70)
+    good = wait_for(lambda: dialog.chosen(ESTIMATE) != orientation, 5)
+    dialog.tap.case(good, "an angle set by hand is meant", dialog.chosen(ESTIMATE))
+    dialog.reset()
+    good = wait_for(lambda: dialog.value("Slant") == slant, 20)
+    dialog.tap.case(good and dialog.value("Field of view") == FOV
+                    and dialog.chosen(ESTIMATE) == orientation, "Reset estimates as the dialog opened",
+                    f"{dialog.value('Slant')}, not {slant}; {dialog.chosen(ESTIMATE)}")
 
 
 def check_drag(dialog):
@@ -155,6 +196,9 @@ def check_cancel(dialog, host):
     working = wait_for(lambda: not any(word in dialog.status() for word in
                                        ("confidence", "Drag", "Draft")), 10, step=.05)
     dialog.window.screenshot("running")
+    reset = dialog.named("Reset")
+    dialog.tap.case(not reset.getState().contains(pyatspi.STATE_SENSITIVE),
+                    "Reset waits for the run's end")
     start = time.monotonic()
     dialog.window.press(cancel)
     stopped = dialog.says("Stopped", seconds=5)
@@ -216,6 +260,7 @@ def main():
         check_cancel(dialog, host)
         check_fill_and_undo(dialog, window, frame, server, host.folder)
         check_last_values(dialog, window, frame)
+        check_meanwhile(dialog, window, frame, server, host.folder)
         log = (Path(artefacts) / f"gimp{name}.log").read_text(errors="replace")
         tap.case("duplicate mnemonic" not in log.lower(), "no mnemonic twice", log[-2000:])
     tap.plan()

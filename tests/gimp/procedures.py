@@ -104,13 +104,17 @@ def errors(host):
            select + "(gimp-layer-set-offsets d 200 200)" + host.fill(**frontal),
            "outside the layer")
     yield ("everything selected", "(gimp-selection-all i)" + host.fill(**frontal),
-           "Nothing is left to copy from")
+           "covers all of the layer that is selected")
     yield ("a group", f"(define g (car {new_group(host)}))(gimp-image-insert-layer i g 0 0)"
            + select + host.fill(layer="g", **frontal), "layer group")
     yield ("indexed", select + "(gimp-image-convert-indexed i CONVERT-DITHER-NONE"
            ' CONVERT-PALETTE-GENERATE 16 FALSE FALSE "")' + host.fill(**frontal), "indexed")
     yield ("locked", "(gimp-item-set-lock-content d TRUE)" + select + host.fill(**frontal),
            "locked")
+    yield ("in a locked group",
+           f"(define g (car {new_group(host)}))(gimp-image-insert-layer i g 0 0)"
+           "(gimp-image-reorder-item i d g 0)(gimp-item-set-lock-content g TRUE)" + select
+           + host.fill(**frontal), "group around it, are locked")
     yield ("floating", select + ("(gimp-edit-copy d)(define f (car (gimp-edit-paste d TRUE)))"
                                  if host.name == "2" else
                                  "(gimp-edit-copy (vector d))"

@@ -92,34 +92,22 @@ def settles_at(dialog, wanted, name):
     dialog.tap.case(good, name, f"{values(dialog)}, not {wanted}")
 
 
-def named(dialog, *names):
-    """Any node of the application so called, for menus that pop up."""
-    def look():
-        for application in dialog.window.applications():
-            for node in walk(application):
-                if plain(node.name) in names and node.getRoleName() != "label":
-                    return node
-        return None
-    return wait_for(look, 10)
-
-
 def check_presets_2(dialog):
     entry = next(node for node in walk(dialog.root) if node.getRoleName() == "text"
                  and node.getState().contains(pyatspi.STATE_EDITABLE))
     entry.queryEditableText().setTextContents("small")
     dialog.press("Save preset")
-    dialog.press("Reset")
+    dialog.reset()
     settles_at(dialog, (1024, 768, 45), "Reset sets the defaults")
-    dialog.window.press(named(dialog, "small"))
+    dialog.window.press(dialog.named("small"))
     settles_at(dialog, (300, 200, 60), "a preset brings its values back")
 
 
 def check_presets_3(dialog):
-    dialog.window.press(named(dialog, "Save Settings"))
-    dialog.window.press(named(dialog, "Reset"))
-    dialog.window.press(named(dialog, "Reset to Factory Defaults"))
+    dialog.window.press(dialog.named("Save Settings"))
+    dialog.reset()
     settles_at(dialog, (1024, 768, 45), "Reset sets the defaults")
-    dialog.window.press(named(dialog, "Load Saved Settings"))
+    dialog.window.press(dialog.named("Load Saved Settings"))
     settles_at(dialog, (300, 200, 60), "saved settings bring their values back")
 
 

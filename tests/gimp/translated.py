@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""The dialog in German, where numbers have a comma: its labels, and a fill to the end.
+"""The dialog in German, where numbers have a comma and words are long, on a small screen: its
+labels, and a fill to the end.
 
-windowed.sh translated.py HOST PLUGIN PICTURE ARTEFACTS PROJECT
+windowed.sh --screen 1024x600 translated.py HOST PLUGIN PICTURE ARTEFACTS PROJECT
 """
 import os
 import subprocess
@@ -12,6 +13,7 @@ from host import Host, Tap
 from window import Window, plain, wait_for, walk
 
 LANGUAGE, LOCALE = "de", "de_DE.UTF-8"
+SCREEN = 1024, 600
 LABELS = ["Neigung", "Richtung", "Bildwinkel", "Schätzen", "Gitter", "Entwurf der Füllung"]
 CALL = {"2": "(plug-in-recede-fill RUN-INTERACTIVE i (t-layer i) 1 80.5 0 50 2 -1 0 0 0 0)",
         "3": "(plug-in-recede-fill #:run-mode RUN-INTERACTIVE #:image i"
@@ -39,6 +41,9 @@ def main():
             found = wait_for(lambda label=label: any(plain(node.name) == label
                                                      for node in walk(dialog)), 10)
             tap.case(found, f"it says {label}")
+        _, _, width, height = window.extents(dialog)
+        tap.case(width <= SCREEN[0] and height <= SCREEN[1], "and is no larger than the screen",
+                 f"{width}x{height}")
         window.screenshot("german")
         spin = window.spin(dialog, "Neigung").queryValue()
         spin.currentValue = 80.5
