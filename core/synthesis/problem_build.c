@@ -192,8 +192,8 @@ recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
   if (context->report.refused_pixels)
     rc_warn(
         context,
-        "%llu of %llu px of the mask lie beyond the horizon and were left as they were. Fill them in "
-        "a second run, with the frontal orientation or on a plane of their own.",
+        "%llu of %llu px of the mask lie beyond the horizon and were left as they were. Fill them "
+        "in a second run, with the frontal orientation or on a plane of their own.",
         (unsigned long long)context->report.refused_pixels, (unsigned long long)summary->pixels);
   return check_source(context, problem);
 }

@@ -62,9 +62,9 @@ def test_light_is_not_negative(folder):
     darker than black."""
     light = (read(IMAGES / "roofs.jpg").astype(np.float32) / 255) ** 2.2
     image = write(folder / "light.tif", light)
-    recede("fill", image, "--mask", IMAGES / "roofs-mask.png", "-o", folder / "out.tif", "--frontal",
-           "-q")
-    out = cv2.imread(str(folder / "out.tif"), cv2.IMREAD_UNCHANGED)
+    mask, out = IMAGES / "roofs-mask.png", folder / "out.tif"
+    recede("fill", image, "--mask", mask, "-o", out, "--frontal", "-q")
+    out = cv2.imread(str(out), cv2.IMREAD_UNCHANGED)
     check(out.dtype == np.float32 and out.min() >= 0, out.dtype, out.min())
     check((out != light).any(), "nothing was filled")
 

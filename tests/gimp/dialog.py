@@ -155,7 +155,8 @@ def check_estimate(dialog):
     dialog.reset()
     good = wait_for(lambda: dialog.value("Slant") == slant, 20)
     dialog.tap.case(good and dialog.value("Field of view") == FOV
-                    and dialog.chosen(ESTIMATE) == orientation, "Reset estimates as the dialog opened",
+                    and dialog.chosen(ESTIMATE) == orientation,
+                    "Reset estimates as the dialog opened",
                     f"{dialog.value('Slant')}, not {slant}; {dialog.chosen(ESTIMATE)}")
 
 
