@@ -54,9 +54,10 @@ void metadata_take(metadata_parts *parts, const uint8_t *bytes, size_t size) {
     *part = part == &parts->iptc ? metadata_clean_iptc(bytes, size) : metadata_copy(bytes, size);
 }
 
-/* GLib ends the process where it gets no memory: ask before for what its arrays grow to. */
+/* GLib ends the process where it gets no memory: ask before for what its arrays grow to, and for
+ * one text and its copy. */
 static bool has_room(size_t size) {
-  void *room = malloc(2 * size + ((size_t)1 << 20));
+  void *room = malloc(2 * size + 2 * METADATA_LONGEST_TEXT);
   free(room);
   return room != NULL;
 }

@@ -5,9 +5,7 @@
 
 #define EXIF "Exif\0"                      /* and one more 0 */
 #define XMP "http://ns.adobe.com/xap/1.0/" /* and a 0 */
-/* What does not fit in one segment, mostly pictures and maps of depth. */
-#define MORE_XMP "http://ns.adobe.com/xmp/extension/" /* and a 0 */
-#define PHOTOSHOP "Photoshop 3.0"                     /* and a 0 */
+#define PHOTOSHOP "Photoshop 3.0"          /* and a 0 */
 enum { APP0 = 0xe0, APP1 = 0xe1, APP2 = 0xe2, APP13 = 0xed, COMMENT = 0xfe, SCAN = 0xda };
 #define LONGEST 65533 /* bytes of a segment: its length has 16 bits and counts itself */
 
@@ -41,12 +39,8 @@ void metadata_from_jpeg(const uint8_t *bytes, size_t size, metadata_parts *parts
   segment found;
   GByteArray *iptc = NULL;
   for (size_t at = 2; next_segment(bytes, size, &at, &found);) {
-    if (begins(&found, APP1, EXIF, 6) && !parts->exif) {
-      parts->exif = metadata_copy(found.data + 6, found.size - 6);
-    } else if (begins(&found, APP1, XMP, sizeof XMP) && !parts->xmp) {
-      parts->xmp = metadata_copy(found.data + sizeof XMP, found.size - sizeof XMP);
-    } else if (begins(&found, APP1, MORE_XMP, sizeof MORE_XMP)) {
-      parts->lost = true;
+    if (found.marker == APP1) {
+      metadata_take(parts, found.data, found.size);
     } else if (begins(&found, APP13, PHOTOSHOP, sizeof PHOTOSHOP)) {
       append_to(&iptc, found.data + sizeof PHOTOSHOP, found.size - sizeof PHOTOSHOP);
     } else if (found.marker == COMMENT) {

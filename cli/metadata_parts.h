@@ -6,6 +6,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* A PNG's text, unpacked: XMP and Exif have some 64 KiB, twice that as digits. */
+#define METADATA_LONGEST_TEXT ((size_t)4 << 20)
+
 typedef struct metadata_parts {
   GByteArray *exif;    /* an Exif block (a TIFF structure), its thumbnail blanked */
   GByteArray *xmp;     /* the packet */

@@ -6,20 +6,18 @@
 
 #include "metadata_parts.h"
 
-#define LONGEST \
-  ((size_t)4 << 20) /* unpacked: XMP and Exif have some 64 KiB, twice that as digits */
 #define XMP_KEY "XML:com.adobe.xmp"
 #define RAW_KEY "Raw profile type "
 
 static GByteArray *unpack(const uint8_t *bytes, size_t size) {
-  GByteArray *to = g_byte_array_sized_new((guint)LONGEST);
+  GByteArray *to = g_byte_array_sized_new((guint)METADATA_LONGEST_TEXT);
   GConverter *zlib = G_CONVERTER(g_zlib_decompressor_new(G_ZLIB_COMPRESSOR_FORMAT_ZLIB));
   gsize read = 0, written = 0;
   GConverterResult result;
-  g_byte_array_set_size(to, (guint)LONGEST);
+  g_byte_array_set_size(to, (guint)METADATA_LONGEST_TEXT);
   /* Once is enough: what does not fit then is no metadata. */
-  result = g_converter_convert(zlib, bytes, size, to->data, LONGEST, G_CONVERTER_INPUT_AT_END,
-                               &read, &written, NULL);
+  result = g_converter_convert(zlib, bytes, size, to->data, METADATA_LONGEST_TEXT,
+                               G_CONVERTER_INPUT_AT_END, &read, &written, NULL);
   g_object_unref(zlib);
   g_byte_array_set_size(to, (guint)written);
   if (result == G_CONVERTER_FINISHED) return to;

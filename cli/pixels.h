@@ -26,8 +26,8 @@ bool pixels_opaque(const recede_view *view);
 /* Copies into another type and number of channels: gray spreads to RGB, alpha is dropped or 1. From
  * RGB to gray there is no way here. */
 void pixels_convert(const recede_view *from, const recede_view *to);
-/* A mask of one channel from a picture: its luminance times its alpha, which
- * premultiplied colours hold already. false: *bad_x, *bad_y is not finite. */
+/* A mask of one channel from a picture: its luminance times its alpha, which premultiplied colours
+ * hold already. false: *bad_x, *bad_y is not finite. */
 bool pixels_to_mask(const recede_view *from, bool premultiplied, const recede_view *to, int *bad_x,
                     int *bad_y);
 

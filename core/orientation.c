@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "image/view.h"
 #include "plane/estimate.h"
+#include "synthesis/problem_build.h"
 
 /* Orientation is read from a copy of the picture no longer than this: the estimate's accuracy does
  * not gain from more, its time does. */
@@ -53,21 +53,12 @@ static recede_status explain(rc_context *context, recede_status status, const ch
 /* (on) becomes the middle of what the mask has below a horizon h, if that is its foot. */
 static recede_status move_to_foot(rc_context *context, const recede_view *mask, const double h[4],
                                   double on[2]) {
-  double slope = (h[3] - h[1]) / (h[2] - h[0]), all = 0, below = 0, sum_x = 0, sum_y = 0;
-  float *row;
-  if (!(fabs(slope) <= 1)) return RECEDE_OK; /* steeper: neither side is below */
-  rc_block *mark = rc_mark(context);
-  RC_TRY(RC_NEW(context, mask->width, &row));
-  for (int y = 0; y < mask->height; y++) {
-    rc_view_read(mask, 0, y, mask->width, row);
-    for (int x = 0; x < mask->width; x++) {
-      if (!(row[x] > 0)) continue;
-      all++;
-      if (y > h[1] + slope * (x - h[0])) below++, sum_x += x, sum_y += y;
-    }
-  }
-  rc_release(context, mark);
-  if (below > LEAST_FOOT * all) on[0] = sum_x / below, on[1] = sum_y / below;
+  rc_target_summary all, below;
+  /* Where it is steeper neither side is below. */
+  if (!(fabs(h[3] - h[1]) <= fabs(h[2] - h[0]))) return RECEDE_OK;
+  RC_TRY(rc_sum_target(context, mask, NULL, &all));
+  RC_TRY(rc_sum_target(context, mask, h, &below));
+  if ((double)below.pixels > LEAST_FOOT * (double)all.pixels) on[0] = below.x, on[1] = below.y;
   return RECEDE_OK;
 }
 

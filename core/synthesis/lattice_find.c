@@ -62,7 +62,6 @@ typedef struct link {
 typedef struct survey {
   const rc_level *level;
   rc_lattice *lattice;
-  float spacing;
   double fullest;
   cell cells[GRID][GRID];
   double trend[2][TERMS];
@@ -127,12 +126,13 @@ static bool next_periods(const rc_copy *periods, int count, float *length, rc_la
 static void add_pixel(survey *s, float a, float b, double share, double value) {
   float phases[2], near[2][2 * WITHIN + 1];
   double phasor[2][2];
-  int column = (int)rc_round(a / s->spacing), row = (int)rc_round(b / s->spacing);
+  int column = (int)rc_round(a / s->lattice->spacing), row = (int)rc_round(b / s->lattice->spacing);
   float unit = -.5f / (SIGMA * SIGMA);
   rc_lattice_even_phases(s->lattice, a, b, phases);
   for (int i = 0; i < 2; i++) turn(-phases[i], phasor[i]);
   for (int n = -WITHIN; n <= WITHIN; n++) {
-    float across = a / s->spacing - (float)(column + n), along = b / s->spacing - (float)(row + n);
+    float across = a / s->lattice->spacing - (float)(column + n),
+          along = b / s->lattice->spacing - (float)(row + n);
     near[0][n + WITHIN] = rc_exp(unit * across * across);
     near[1][n + WITHIN] = rc_exp(unit * along * along);
   }
@@ -153,7 +153,7 @@ static void look_around(survey *s) {
   const rc_level *level = s->level;
   int pixels = level->width * level->height;
   uint64_t step = (uint64_t)pixels / MOST_PIXELS + 1;
-  float edge = (HALF_GRID + WITHIN) * s->spacing;
+  float edge = (HALF_GRID + WITHIN) * s->lattice->spacing;
   for (int i = 0; i < pixels; i++) {
     int column = i % level->width, row = i / level->width;
     if (!level->room[i]) continue;
@@ -277,19 +277,17 @@ static void relax(survey *s, int i) {
   }
 }
 
+static int within(int value, int least, int most) {
+  return value < least ? least : value > most ? most : value;
+}
+
 static void tell_bends(survey *s, rc_bends *bends) {
   double terms[TERMS];
   for (int i = 0; i < 2; i++) {
     relax(s, i);
     for (int y = 0; y < GRID; y++)
       for (int x = 0; x < GRID; x++) {
-        terms_at(x < s->x0   ? s->x0
-                 : x > s->x1 ? s->x1
-                             : x,
-                 y < s->y0   ? s->y0
-                 : y > s->y1 ? s->y1
-                             : y,
-                 terms);
+        terms_at(within(x, s->x0, s->x1), within(y, s->y0, s->y1), terms);
         bends->cycles[y][x][i] = (float)(trend_of(s, i, terms) + s->off[y][x]);
       }
   }
@@ -306,8 +304,8 @@ static void mark_hole(survey *s) {
     for (int x = level->box.x0; x < level->box.x1; x++) {
       float px = rc_level_x(level, x), py = rc_level_y(level, y), w = rc_level_w(level, px, py);
       if (!rc_level_is_target(level, x, y) || !(w > 1 / WIDEST_RATIO)) continue;
-      int column = (int)rc_round(px / w / s->spacing) + HALF_GRID;
-      int row = (int)rc_round(py / w / s->spacing) + HALF_GRID;
+      int column = (int)rc_round(px / w / s->lattice->spacing) + HALF_GRID;
+      int row = (int)rc_round(py / w / s->lattice->spacing) + HALF_GRID;
       for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++)
           if (rc_inside(GRID, GRID, column + i, row + j))
@@ -345,7 +343,7 @@ static double look_for(survey *s, rc_lattice *lattice) {
   float q_px = sqrtf(lattice->q.a * lattice->q.a + lattice->q.b * lattice->q.b);
   memset(s->cells, 0, sizeof s->cells);
   memset(s->trend, 0, sizeof s->trend);
-  s->lattice = lattice, s->spacing = fmaxf(p_px, q_px), s->fullest = 0;
+  s->lattice = lattice, lattice->spacing = fmaxf(p_px, q_px), s->fullest = 0;
   look_around(s);
   find_ends(s);
   mark_hole(s);
@@ -372,7 +370,6 @@ recede_status rc_lattice_find(rc_context *context, const rc_level *level, const 
     double agreed = look_for(s, &tried);
     if (agreed > most) {
       most = agreed, *lattice = tried;
-      lattice->spacing = s->spacing;
       tell_bends(s, bends);
     }
     RC_TRY(rc_poll(context));

@@ -19,8 +19,12 @@
 /* The mask's ring: edges of what was removed bleed this far. */
 #define UNTRUSTED_RING_PX 2
 
-recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
-                                  rc_target_summary *summary) {
+static bool is_below(const double line[4], int x, int y) {
+  return !line || y > line[1] + (line[3] - line[1]) / (line[2] - line[0]) * (x - line[0]);
+}
+
+recede_status rc_sum_target(rc_context *context, const recede_view *mask, const double line[4],
+                            rc_target_summary *summary) {
   double sum_x = 0, sum_y = 0;
   float *row;
   *summary = (rc_target_summary){{mask->width, mask->height, 0, 0}, 0, 0, 0};
@@ -29,7 +33,7 @@ recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
   for (int y = 0; y < mask->height; y++) {
     rc_view_read(mask, 0, y, mask->width, row);
     for (int x = 0; x < mask->width; x++) {
-      if (!(row[x] > 0)) continue;
+      if (!(row[x] > 0) || !is_below(line, x, y)) continue;
       rc_box *box = &summary->box;
       if (x < box->x0) box->x0 = x;
       if (x >= box->x1) box->x1 = x + 1;
@@ -41,13 +45,18 @@ recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
     }
   }
   rc_release(context, mark);
-  if (!summary->pixels)
-    return rc_fail(context, RECEDE_EMPTY_TARGET,
-                   "The mask selects nothing: all its pixels are black. Paint what is to be filled "
-                   "white.");
-  summary->x = sum_x / (double)summary->pixels;
-  summary->y = sum_y / (double)summary->pixels;
+  summary->x = sum_x / fmax((double)summary->pixels, 1);
+  summary->y = sum_y / fmax((double)summary->pixels, 1);
   return RECEDE_OK;
+}
+
+recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
+                                  rc_target_summary *summary) {
+  RC_TRY(rc_sum_target(context, mask, NULL, summary));
+  if (summary->pixels) return RECEDE_OK;
+  return rc_fail(context, RECEDE_EMPTY_TARGET,
+                 "The mask selects nothing: all its pixels are black. Paint what is to be filled "
+                 "white.");
 }
 
 rc_box rc_problem_box(const rc_target_summary *summary, int width, int height) {

@@ -11,7 +11,11 @@ typedef struct rc_target_summary {
   double x, y; /* centroid */
 } rc_target_summary;
 
-/* Scans the mask once. RECEDE_EMPTY_TARGET when it selects nothing. */
+/* Of what the mask has below the line through (line[0], line[1]) and (line[2], line[3]), of all
+ * where line is NULL. No pixels: the rest says nothing. */
+recede_status rc_sum_target(rc_context *context, const recede_view *mask, const double line[4],
+                            rc_target_summary *summary);
+/* Of all the mask. RECEDE_EMPTY_TARGET when it selects nothing. */
 recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
                                   rc_target_summary *summary);
 /* The part of the picture that a fill looks at: the target's box with its surroundings. */

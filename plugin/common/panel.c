@@ -71,11 +71,15 @@ static void on_draft(gpointer user, const char *text) {
 
 /* --------------------------------------------------------------------------------- estimate -- */
 
-static void set_values(rp_panel *panel, double slant_deg, double tilt_deg) {
+static void set_value(rp_panel *panel, const char *key, double value) {
   panel->setting = TRUE;
-  panel->set(panel->user, "slant", slant_deg);
-  panel->set(panel->user, "tilt", tilt_deg);
+  panel->set(panel->user, key, value);
   panel->setting = FALSE;
+}
+
+static void set_angles(rp_panel *panel, double slant_deg, double tilt_deg) {
+  set_value(panel, "slant", slant_deg);
+  set_value(panel, "tilt", tilt_deg);
 }
 
 static void show_plane(rp_panel *panel) {
@@ -99,9 +103,7 @@ static void stop_estimate(rp_panel *panel) {
 static void take_angles(rp_panel *panel) {
   if (choice(panel, "orientation") == RECEDE_ORIENTATION_ANGLES) return;
   stop_estimate(panel);
-  panel->setting = TRUE;
-  panel->set(panel->user, "orientation", RECEDE_ORIENTATION_ANGLES);
-  panel->setting = FALSE;
+  set_value(panel, "orientation", RECEDE_ORIENTATION_ANGLES);
   explain(panel);
 }
 
@@ -114,7 +116,7 @@ static void on_estimate(gpointer user, const rp_request *request) {
     char *text = g_strdup_printf(_("Read from the picture with a confidence of %.0f %%. Look "
                                    "whether the squares lie on the ground; drag them if not."),
                                  100 * found->confidence);
-    set_values(panel, round(found->slant_deg * 10) / 10, round(found->tilt_deg * 10) / 10);
+    set_angles(panel, round(found->slant_deg * 10) / 10, round(found->tilt_deg * 10) / 10);
     show_plane(panel);
     say(panel, text);
     g_free(text);
@@ -123,7 +125,7 @@ static void on_estimate(gpointer user, const rp_request *request) {
   take_angles(panel); /* what is shown is what will be filled */
   if (panel->settings->procedure == RP_FILL &&
       rp_scene_first_guess(&panel->scene, &slant_deg, &tilt_deg)) {
-    set_values(panel, round(slant_deg * 10) / 10, round(tilt_deg * 10) / 10);
+    set_angles(panel, round(slant_deg * 10) / 10, round(tilt_deg * 10) / 10);
     show_plane(panel);
   }
   say(panel, _("The orientation could not be read from the picture with confidence. Drag the "
@@ -159,9 +161,7 @@ static void renew_estimate(rp_panel *panel) {
 static void on_estimate_clicked(GtkButton *button, gpointer user) {
   rp_panel *panel = user;
   (void)button;
-  panel->setting = TRUE;
-  panel->set(panel->user, "orientation", RECEDE_ORIENTATION_AUTO);
-  panel->setting = FALSE;
+  set_value(panel, "orientation", RECEDE_ORIENTATION_AUTO);
   start_estimate(panel);
 }
 
@@ -170,7 +170,7 @@ static void on_estimate_clicked(GtkButton *button, gpointer user) {
 static void on_dragged(gpointer user, double slant_deg, double tilt_deg) {
   rp_panel *panel = user;
   take_angles(panel);
-  set_values(panel, slant_deg, tilt_deg);
+  set_angles(panel, slant_deg, tilt_deg);
   show_plane(panel);
   explain(panel);
 }

@@ -39,9 +39,8 @@ GtkWidget *rp_ui_paragraph(GtkWidget **label) {
   return layout;
 }
 
-#define AROUND                                                                      \
-  60 /* px for the window's frame and the desktop's bars, which GTK 2 does not tell \
-      */
+/* px for the window's frame and the desktop's bars, which GTK 2 does not tell. */
+#define AROUND 60
 
 void rp_ui_open_so_large(GtkWidget *window) {
   GdkScreen *screen = gtk_widget_get_screen(window);
