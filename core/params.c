@@ -102,6 +102,8 @@ static const recede_param_info table[] = {
     STAGE("engine-alike", engine_alike, "copy only what looks like something beside the hole"),
     STAGE("engine-spots", engine_spots,
           "copy nothing that stands out, by contrast or colour, more than all near the hole"),
+    STAGE("engine-kin", engine_kin,
+          "copy into each part of the hole what looks like something beside it nearby"),
     STAGE("engine-focus", engine_focus, "copy what is as sharp as what lies around"),
     STAGE("engine-light", engine_light,
           "copy what lies in the same light, or nearly, where no plane recedes"),

@@ -68,22 +68,6 @@ static float own_spread(const comparison *c, float *nearest) {
   return nearest[count * OWN_PERCENTILE / 100];
 }
 
-/* The sources' variance, mean over the channels. */
-static double variance_of(const rc_places *p) {
-  double sum[3] = {0, 0, 0}, square[3] = {0, 0, 0}, count = 0, total = 0;
-  int channels = p->image->channels;
-  for (int y = 0; y < p->image->height; y++)
-    for (int x = 0; x < p->image->width; x++) {
-      if (!(*rc_flag(p->flags, x, y) & RC_SOURCE)) continue;
-      const float *v = rc_pixel(p->image, x, y);
-      for (int k = 0; k < channels; k++) sum[k] += v[k], square[k] += (double)v[k] * v[k];
-      count++;
-    }
-  for (int k = 0; k < channels && count > 0; k++)
-    total += square[k] / count - sum[k] / count * (sum[k] / count);
-  return fmax(total, 0) / channels;
-}
-
 static void compare_row(void *user, int row, int thread) {
   const comparison *c = user;
   (void)thread;
@@ -110,7 +94,8 @@ recede_status rc_keep_alike(rc_context *context, const rc_band *band, const rc_i
   RC_TRY(rc_poll(context));
   double own = TIMES_OWN * TIMES_OWN * own_spread(&c, nearest);
   if (isfinite(own)) {
-    c.most = (float)fmax(own, LEAST_UNLIKE * LEAST_UNLIKE * variance_of(&c.places));
+    c.most = (float)fmax(own, LEAST_UNLIKE * LEAST_UNLIKE *
+                                  rc_source_variance(c.places.image, c.places.flags));
     RC_TRY(rc_parallel(context, c.places.rows, compare_row, &c));
     RC_TRY(rc_places_take(context, &c.places, band, flags, taken));
   }

@@ -15,6 +15,9 @@
 #define MOST_RELIT 1.f
 #define MOST_PRICED .7f
 #define PRICE_OF_LIGHT .3f
+/* And be no kin of what lies beside the hole there, at this price. With 1 a floor still got a piece
+ * of a carved stone that stands near it. */
+#define PRICE_OF_NO_KIN 3.f
 
 /* Cells are pixels of the coarsest level, but not finer than this. */
 #define LEAST_EXPONENT 3
@@ -75,9 +78,30 @@ static recede_status set_light(rc_context *context, table *t, bool *differs) {
   return RECEDE_OK;
 }
 
+/* A cell is all that its pixels are. */
+static recede_status set_kin(rc_context *context, table *t, const rc_image *images,
+                             const rc_mask *flags, int levels, bool *wanted) {
+  const rc_mask *coarsest = &flags[levels - 1];
+  int shift = t->exponent - (levels - 1);
+  rc_kin *kin;
+  bool told = false;
+  if (*wanted) {
+    RC_TRY(RC_NEW(context, (size_t)coarsest->width * (size_t)coarsest->height, &kin));
+    RC_TRY(rc_kin_find(context, &images[levels - 1], coarsest, kin, &told));
+  }
+  for (int i = 0; !told && i < t->cells.width * t->cells.height; i++)
+    t->conditions[i].kin = RC_ALL_KIN;
+  for (int y = 0; told && y < coarsest->height; y++)
+    for (int x = 0; x < coarsest->width; x++)
+      t->conditions[(y >> shift) * t->cells.width + (x >> shift)].kin |=
+          kin[(size_t)y * (size_t)coarsest->width + (size_t)x];
+  *wanted = told;
+  return RECEDE_OK;
+}
+
 recede_status rc_conditions_find(rc_context *context, const rc_image *images, const rc_mask *flags,
                                  int levels, const rc_tone *tone, float deviation, bool focus,
-                                 bool light, rc_conditions *conditions) {
+                                 bool kin, bool light, rc_conditions *conditions) {
   int exponent = levels - 1 > LEAST_EXPONENT ? levels - 1 : LEAST_EXPONENT;
   int width = (flags[0].width + (1 << exponent) - 1) >> exponent;
   int height = (flags[0].height + (1 << exponent) - 1) >> exponent;
@@ -97,8 +121,9 @@ recede_status rc_conditions_find(rc_context *context, const rc_image *images, co
     RC_TRY(rc_focus_measure(context, images, flags, levels, &t.cells, exponent, blur, &focus));
   for (size_t i = 0; focus && i < count; i++) t.conditions[i].blur = blur[i];
   if (light) RC_TRY(set_light(context, &t, &light));
+  RC_TRY(set_kin(context, &t, images, flags, levels, &kin));
   rc_release(context, mark);
-  if (focus || light)
+  if (focus || kin || light)
     *conditions = (rc_conditions){t.conditions, width, exponent};
   else
     rc_release(context, before);
@@ -108,6 +133,7 @@ recede_status rc_conditions_find(rc_context *context, const rc_image *images, co
 float rc_conditions_price(const rc_condition *source, const rc_condition *target) {
   float blur = fabsf(source->blur - target->blur) - MOST_BLUR_OFF, square = 0, price = 0;
   if (blur > 0.f) price = PRICE_OF_BLUR * blur * blur;
+  if (!(source->kin & target->kin)) price += PRICE_OF_NO_KIN;
   for (int k = 0; k < 3; k++) {
     float off = source->light[k] - target->light[k];
     square += off * off;

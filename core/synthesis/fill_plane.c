@@ -301,6 +301,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   bool frontal = problem->line.a == 0 && problem->line.b == 0;
   RC_TRY(rc_conditions_find(context, e.images, e.flags, e.level_count, &tone,
                             127 / (DEVIATIONS * e.gain), params->engine_focus,
+                            params->engine_kin && !problem->synthesis,
                             params->engine_light && frontal, &e.conditions));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
@@ -332,6 +333,6 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int ch
   uint64_t composition = box * (12 * c + 4) + pads;
   uint64_t detail = (grown < pixels ? grown : pixels) * (12 * c + 1) + pixels;
   uint64_t last = search > composition ? search : composition;
-  uint64_t conditions = pixels / 4 + (64 << 10);
+  uint64_t conditions = pixels / 3 + (64 << 10);
   return pyramid + levels + conditions + (last > detail ? last : detail) + ((uint64_t)4 << 20);
 }

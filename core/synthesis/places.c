@@ -1,5 +1,7 @@
 #include "synthesis/places.h"
 
+#include <math.h>
+
 #include "base/memory.h"
 #include "image/distance.h"
 #include "kernels/kernels.h"
@@ -30,6 +32,21 @@ recede_status rc_places_new(rc_context *context, const rc_image *images, const r
   RC_TRY(RC_NEW_ZERO(context, places->columns * places->rows, &places->unlike));
   RC_TRY(RC_NEW(context, pixels, &places->beside));
   return measure_beside(context, places);
+}
+
+double rc_source_variance(const rc_image *image, const rc_mask *flags) {
+  double sum[3] = {0, 0, 0}, square[3] = {0, 0, 0}, count = 0, total = 0;
+  int channels = image->channels;
+  for (int y = 0; y < image->height; y++)
+    for (int x = 0; x < image->width; x++) {
+      if (!(*rc_flag(flags, x, y) & RC_SOURCE)) continue;
+      const float *v = rc_pixel(image, x, y);
+      for (int k = 0; k < channels; k++) sum[k] += v[k], square[k] += (double)v[k] * v[k];
+      count++;
+    }
+  for (int k = 0; k < channels && count > 0; k++)
+    total += square[k] / count - sum[k] / count * (sum[k] / count);
+  return fmax(total, 0) / channels;
 }
 
 bool rc_look_at(const rc_places *places, int x, int y, rc_looks *looks) {

@@ -34,6 +34,8 @@ typedef struct rc_places {
  * every n-th is a place. */
 recede_status rc_places_new(rc_context *context, const rc_image *images, const rc_mask *flags,
                             int levels, int most, rc_places *places);
+/* The sources' variance, mean over the channels. */
+double rc_source_variance(const rc_image *image, const rc_mask *flags);
 /* What the pixel looks like, that is, the square around it. False: not enough of it is known. */
 bool rc_look_at(const rc_places *places, int x, int y, rc_looks *looks);
 /* What the middle of a place looks like. False: it is not known. */

@@ -102,7 +102,8 @@ static double wall_in_hole(const char *settings, bool from_wall) {
 
 static void walls_stay_out(void) {
   g_assert_cmpfloat(wall_in_hole("orientation=frontal quality=draft", false), <, .03);
-  g_assert_cmpfloat(wall_in_hole("orientation=frontal quality=draft engine-alike=0", false), >, .2);
+  const char *without = "orientation=frontal quality=draft engine-alike=0 engine-kin=0";
+  g_assert_cmpfloat(wall_in_hole(without, false), >, .2);
   g_assert_cmpfloat(wall_in_hole("orientation=frontal quality=draft", true), >, .5);
 }
 
@@ -180,6 +181,47 @@ static void strangers_stay_beside_small_holes(void) {
   g_test_message("%.5f of the hole is a person, without the stage %.5f", with, without);
   g_assert_cmpfloat(with, ==, 0);
   g_assert_cmpfloat(without, >, 0);
+}
+
+/* A lawn, and heaps of red leaves all over it but around a hole, which one heap reaches into from
+ * the left. */
+static picture leaves_on_a_lawn(void) {
+  const area bare = {70, 40, 290, 200};
+  picture p = picture_new(520, 240, 3, RECEDE_U8);
+  for (int y = 0; y < 240; y++)
+    for (int x = 0; x < 520; x++) {
+      int across = (x + 32) % 52 - 26, down = (y + 14) % 52 - 26;
+      bool is_bare = x >= bare.x0 && x < bare.x1 && y >= bare.y0 && y < bare.y1;
+      bool here =
+          is_bare ? abs(x - 75) < 22 && abs(y - 120) < 22 : across * across + down * down < 22 * 22;
+      double red = here ? .6 : .25, green = here ? .2 : .5, grain = .15 * noise_at(x / 2, y / 2, 8);
+      picture_set(&p, x, y, 0, (float)(red + grain));
+      picture_set(&p, x, y, 1, (float)(green + grain));
+      picture_set(&p, x, y, 2, (float)(.1 + grain));
+    }
+  return p;
+}
+
+/* The part of the hole's end away from the heap that it shows. */
+static double leaves_far_off(const char *settings) {
+  const area hole = {90, 60, 240, 180};
+  double found = 0;
+  for (int seed = 0; seed < 4; seed++) {
+    task t = filled(leaves_on_a_lawn(), hole, settings, seed, 0);
+    for (int y = hole.y0; y < hole.y1; y++)
+      for (int x = hole.x1 - 60; x < hole.x1; x++) found += is_red(&t.result, x, y);
+    task_clear(&t);
+  }
+  return found / (4 * 60 * 120);
+}
+
+/* A heap that lies beside the hole is no stranger; but where it does not lie none is wanted. */
+static void things_stay_on_their_side(void) {
+  double with = leaves_far_off("orientation=frontal");
+  double without = leaves_far_off("orientation=frontal engine-kin=0");
+  g_test_message("%.4f of the far end shows leaves, without the stage %.4f", with, without);
+  g_assert_cmpfloat(with, <, .005);
+  g_assert_cmpfloat(without, >, .1);
 }
 
 /* A green road from row 114 on, a plain strip between it and a hole as wide as the picture, and
@@ -321,6 +363,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/bland/walls", walls_stay_out);
   g_test_add_func("/bland/people", people_stay_where_they_are);
   g_test_add_func("/bland/strangers", strangers_stay_where_they_are);
+  g_test_add_func("/bland/kin", things_stay_on_their_side);
   g_test_add_func("/bland/small-hole", strangers_stay_beside_small_holes);
   g_test_add_func("/bland/far", something_stays);
   g_test_add_func("/bland/focus", what_is_in_focus_stays_so);
