@@ -133,8 +133,7 @@ static float split_at(const float *value, size_t count, double *explained) {
   return at;
 }
 
-/* Each known pixel becomes what most of the square around it is. */
-static recede_status take_majority(rc_context *context, const rc_around *around, int8_t *label) {
+recede_status rc_groups_smooth(rc_context *context, const rc_around *around, int8_t *label) {
   int8_t *before;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, around->pixels, &before));
@@ -215,5 +214,5 @@ recede_status rc_groups_label(rc_context *context, const rc_around *around, cons
                               const rc_way *way, int8_t *label) {
   for (size_t i = 0; i < around->pixels; i++)
     label[i] = !groups->seen[i] ? 0 : along(&groups->looks[i], way->axis) > way->at ? 1 : -1;
-  return take_majority(context, around, label);
+  return rc_groups_smooth(context, around, label);
 }

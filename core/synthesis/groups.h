@@ -36,5 +36,7 @@ recede_status rc_groups_find(rc_context *context, const rc_around *around, int b
 /* Labels known pixels by what they look like, -1 or 1, others 0. */
 recede_status rc_groups_label(rc_context *context, const rc_around *around, const rc_groups *groups,
                               const rc_way *way, int8_t *label);
+/* Each known pixel becomes what most of the square around it is. */
+recede_status rc_groups_smooth(rc_context *context, const rc_around *around, int8_t *label);
 
 #endif

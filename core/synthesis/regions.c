@@ -19,9 +19,13 @@
  * roofs' do not: */
 #define STRAIGHT_TURN .08f
 #define LEAST_OF_ONE_STRAIGHT .8
-/* A chord's pixels; and so near to its ends the border's are not asked. */
+/* A chord's pixels; and so near to it, or to any change, the border's are in doubt: a chord may run
+ * along the border, just outside the hole, and keeps nothing apart there. */
 #define CHORD_PX .75f
-#define ENDS_PX 4.f
+#define DOUBTFUL_PX 4.f
+/* Where an edge is ragged labels change to and fro; they are smoothed so many times for two chords
+ * or more to be told. */
+#define MOST_SMOOTHED 4
 
 typedef struct finder {
   rc_context *context;
@@ -30,35 +34,35 @@ typedef struct finder {
   int8_t *label;
 } finder;
 
-static bool on_a_chord(const rc_chords *c, float x, float y) {
+static bool near_a_chord(const rc_chords *c, float x, float y, float px) {
   for (int i = 0; i < c->count; i++) {
     const rc_change *from = &c->end[i][0], *to = &c->end[i][1];
     float ux = to->x - from->x, uy = to->y - from->y;
     float t = ((x - from->x) * ux + (y - from->y) * uy) / fmaxf(ux * ux + uy * uy, 1e-6f);
     t = fminf(fmaxf(t, 0.f), 1.f);
     rc_change nearest = {from->x + t * ux, from->y + t * uy, 0, 0}, here = {x, y, 0, 0};
-    if (rc_apart(&nearest, &here) <= CHORD_PX) return true;
+    if (rc_apart(&nearest, &here) <= px) return true;
   }
   return false;
 }
 
-static bool near_an_end(const rc_chords *c, float x, float y) {
+static bool is_doubtful(const rc_chords *c, float x, float y) {
   rc_change here = {x, y, 0, 0};
   for (int i = 0; i < c->change_count; i++)
-    if (rc_apart(&c->changes[i], &here) <= ENDS_PX) return true;
-  return false;
+    if (rc_apart(&c->changes[i], &here) <= DOUBTFUL_PX) return true;
+  return near_a_chord(c, x, y, DOUBTFUL_PX);
 }
 
-/* Spreads the labels of the border's pixels, near or not near ends of the edges, into what has none
- * yet of the hole, up to the chords. */
-static void spread(const finder *f, const rc_chords *c, bool near, int32_t *queue,
+/* Spreads the labels of the border's pixels, those in doubt or the others, into what has none yet
+ * of the hole, up to the chords. */
+static void spread(const finder *f, const rc_chords *c, bool doubtful, int32_t *queue,
                    bool *kept_apart) {
   static const int dx[4] = {1, -1, 0, 0}, dy[4] = {0, 0, 1, -1};
   const rc_around *a = &f->around;
   size_t first = 0, last = 0;
   for (int y = 0; y < a->height; y++)
     for (int x = 0; x < a->width; x++)
-      if (rc_on_border(a, f->label, x, y) && near_an_end(c, (float)x, (float)y) == near)
+      if (rc_on_border(a, f->label, x, y) && is_doubtful(c, (float)x, (float)y) == doubtful)
         queue[last++] = y * a->width + x;
   *kept_apart = true;
   while (first < last) {
@@ -66,7 +70,7 @@ static void spread(const finder *f, const rc_chords *c, bool near, int32_t *queu
     for (int k = 0; k < 4; k++) {
       int x = here % a->width + dx[k], y = here / a->width + dy[k], next = y * a->width + x;
       if (!rc_inside(a->width, a->height, x, y) || a->from_hole[next] ||
-          on_a_chord(c, (float)x, (float)y))
+          near_a_chord(c, (float)x, (float)y, CHORD_PX))
         continue;
       if (f->label[next] == -f->label[here]) *kept_apart = false;
       if (f->label[next]) continue;
@@ -76,8 +80,8 @@ static void spread(const finder *f, const rc_chords *c, bool near, int32_t *queu
   }
 }
 
-/* Labels the hole. kept_apart: no two labels meet but at chords. What only an edge's end leads to,
- * in a corner of the picture, is asked last. */
+/* Labels the hole. kept_apart: no two labels meet but at chords. Those in doubt are asked last,
+ * for what only they lead to. Otherwise the hole's labels are taken away again. */
 static recede_status label_hole(const finder *f, const rc_chords *c, bool *kept_apart) {
   int32_t *queue;
   bool unused;
@@ -85,6 +89,8 @@ static recede_status label_hole(const finder *f, const rc_chords *c, bool *kept_
   RC_TRY(RC_NEW(f->context, f->around.pixels, &queue));
   spread(f, c, false, queue, kept_apart);
   spread(f, c, true, queue, &unused);
+  for (size_t i = 0; !*kept_apart && i < f->around.pixels; i++)
+    if (!f->around.from_hole[i]) f->label[i] = 0;
   rc_release(f->context, mark);
   return rc_poll(f->context);
 }
@@ -135,22 +141,31 @@ static bool trusted(const rc_chords *c, const rc_way *way) {
   return way->explained >= (c->turn > STRAIGHT_TURN ? LEAST_OF_ONE_CHORD : LEAST_OF_ONE_STRAIGHT);
 }
 
+/* Asks one way to tell two things apart. */
+static recede_status find_chords(finder *f, const rc_groups *groups, const rc_way *way, bool *two,
+                                 int *count) {
+  rc_chords chords;
+  bool kept_apart = false;
+  RC_TRY(rc_groups_label(f->context, &f->around, groups, way, f->label));
+  for (int smoothed = 0; smoothed <= MOST_SMOOTHED && !kept_apart; smoothed++) {
+    if (smoothed) RC_TRY(rc_groups_smooth(f->context, &f->around, f->label));
+    RC_TRY(rc_chords_find(f->context, &f->around, &f->chart, f->label, &chords));
+    *two = *two || chords.change_count > 0;
+    if (!trusted(&chords, way) || (smoothed && chords.count == 1)) continue;
+    RC_TRY(label_hole(f, &chords, &kept_apart));
+  }
+  *count = kept_apart ? chords.count : 0;
+  return RECEDE_OK;
+}
+
 static recede_status find(finder *f, float *distance, bool *two, int *count) {
   rc_groups groups;
-  rc_chords chords;
   int beside_px;
   RC_TRY(measure_from_hole(f, &beside_px));
   RC_TRY(RC_NEW_ZERO(f->context, f->around.pixels, &f->label));
   RC_TRY(rc_groups_find(f->context, &f->around, beside_px, &groups));
-  for (int i = 0; i < groups.count && !*count; i++) {
-    bool kept_apart;
-    RC_TRY(rc_groups_label(f->context, &f->around, &groups, &groups.ways[i], f->label));
-    RC_TRY(rc_chords_find(f->context, &f->around, &f->chart, f->label, &chords));
-    *two = *two || chords.change_count > 0;
-    if (!trusted(&chords, &groups.ways[i])) continue;
-    RC_TRY(label_hole(f, &chords, &kept_apart));
-    if (kept_apart) *count = chords.count;
-  }
+  for (int i = 0; i < groups.count && !*count; i++)
+    RC_TRY(find_chords(f, &groups, &groups.ways[i], two, count));
   return *count ? measure_distances(f, distance) : RECEDE_OK;
 }
 
