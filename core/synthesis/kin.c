@@ -17,7 +17,7 @@
 /* The square that is looked at: a hen's head is 3 px at the coarsest level. */
 #define HALF_PX 1
 /* Near a target pixel is what lies as far away as the border of the hole, and this. */
-#define MARGIN_PX 6
+#define MARGIN_PX 9
 /* Looks are alike up to so many times what samples differ by from the most similar other at most so
  * far away, that shares no pixel with them, 90 of 100; or up to this part of the sources'
  * deviation. Pebbles of many colours differ by .4 of it, grass by .1. */
@@ -26,8 +26,8 @@
 #define OWN_PX 12
 #define LEAST_UNLIKE .4f
 /* There are several things where no more than this part of all pairs of a source and a target pixel
- * are kin: one texture has .68 to .99, hens, paths and walls .42 to .65. */
-#define MOST_KIN .65
+ * are kin: one texture has .75 to 1, hens, paths and walls .45 to .71. */
+#define MOST_KIN .72
 /* And these are the pairs, a grid of sources by one of target pixels. */
 #define PAIRS_EACH 1024
 
