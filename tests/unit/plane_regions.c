@@ -6,6 +6,7 @@
 #define SLANT_DEG 50
 /* Within so many px of an edge either texture will do. */
 #define EDGE_PX 4
+#define RAGGED_EDGE_PX 12
 static const area middle = {85, 60, 225, 185}, bottom = {85, 130, 225, 240};
 
 static double strays(double v, int edge) {
@@ -33,6 +34,12 @@ static double path(double u, double v, int k) {
   return inside ? lawn(u, v, k) : bricks(u, v, k);
 }
 
+/* Its edges are ragged: to both sides of them lie patches of the other texture. */
+static double ragged_path(double u, double v, int k) {
+  double patches = sin(1.1 * u + .6 * v) + sin(.9 * v - .7 * u);
+  return fabs(u) + 3 * patches < 6 ? gravel(u, v, k) : lawn(u, v, k);
+}
+
 static picture draw(pattern *floor) {
   return picture_of_plane(320, 240, 3, RECEDE_U8, floor, 6, SLANT_DEG, 0);
 }
@@ -41,9 +48,9 @@ static bool is_lawn(const picture *p, int x, int y) {
   return picture_get(p, x, y, 1) > 1.3f * picture_get(p, x, y, 0);
 }
 
-static bool beside_an_edge(const picture *p, int x, int y) {
-  for (int j = MAX(y - EDGE_PX, 0); j <= MIN(y + EDGE_PX, p->view.height - 1); j++)
-    for (int i = MAX(x - EDGE_PX, 0); i <= MIN(x + EDGE_PX, p->view.width - 1); i++)
+static bool beside_an_edge(const picture *p, int x, int y, int edge_px) {
+  for (int j = MAX(y - edge_px, 0); j <= MIN(y + edge_px, p->view.height - 1); j++)
+    for (int i = MAX(x - edge_px, 0); i <= MIN(x + edge_px, p->view.width - 1); i++)
       if (is_lawn(p, i, j) != is_lawn(p, x, y)) return true;
   return false;
 }
@@ -56,8 +63,8 @@ static picture most_of_it(void) {
   return p;
 }
 
-/* The part of the hole that has the other texture's colour. */
-static double part_wrong(pattern *floor, area hole, const char *settings) {
+/* The part of the hole, but for what is so near to an edge, that has the other texture's colour. */
+static double part_wrong(pattern *floor, area hole, int edge_px, const char *settings) {
   double wrong = 0, all = 0;
   for (int seed = 0; seed < 3; seed++) {
     task t = task_new(draw(floor), settings);
@@ -67,7 +74,7 @@ static double part_wrong(pattern *floor, area hole, const char *settings) {
     task_succeeds(&t);
     for (int y = hole.y0; y < hole.y1; y++)
       for (int x = hole.x0; x < hole.x1; x++) {
-        if (beside_an_edge(&t.image, x, y)) continue;
+        if (beside_an_edge(&t.image, x, y, edge_px)) continue;
         wrong += is_lawn(&t.result, x, y) != is_lawn(&t.image, x, y), all++;
       }
     task_clear(&t);
@@ -80,21 +87,29 @@ static double part_wrong(pattern *floor, area hole, const char *settings) {
 #define NO_SIDES "engine-regions=0 engine-tracks=0"
 
 static void a_verge_stays_where_it_is(void) {
-  double with = part_wrong(verge, middle, ""), without = part_wrong(verge, middle, NO_SIDES);
+  double with = part_wrong(verge, middle, EDGE_PX, ""),
+         without = part_wrong(verge, middle, EDGE_PX, NO_SIDES);
   g_assert_cmpfloat(with, <, .006);
   g_assert_cmpfloat(without, >, with + .1);
 }
 
 static void a_path_goes_on(void) {
-  double with = part_wrong(path, middle, "");
+  double with = part_wrong(path, middle, EDGE_PX, "");
   g_assert_cmpfloat(with, <, .02);
-  g_assert_cmpfloat(part_wrong(path, middle, NO_SIDES), >, with + .1);
+  g_assert_cmpfloat(part_wrong(path, middle, EDGE_PX, NO_SIDES), >, with + .1);
+}
+
+static void a_ragged_path_goes_on(void) {
+  double with = part_wrong(ragged_path, middle, RAGGED_EDGE_PX, "");
+  double without = part_wrong(ragged_path, middle, RAGGED_EDGE_PX, NO_SIDES);
+  g_assert_cmpfloat(with, <, .03);
+  g_assert_cmpfloat(without, >, with + .1);
 }
 
 static void a_path_leaves_the_picture(void) {
-  double with = part_wrong(path, bottom, "");
+  double with = part_wrong(path, bottom, EDGE_PX, "");
   g_assert_cmpfloat(with, <, .025); /* .03 where both sides share their sources */
-  g_assert_cmpfloat(part_wrong(path, bottom, NO_SIDES), >, with + .1);
+  g_assert_cmpfloat(part_wrong(path, bottom, EDGE_PX, NO_SIDES), >, with + .1);
 }
 
 /* What the source leaves out is not copied, and bricks fill its place. */
@@ -152,6 +167,7 @@ int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/regions/verge", a_verge_stays_where_it_is);
   g_test_add_func("/regions/path", a_path_goes_on);
+  g_test_add_func("/regions/ragged", a_ragged_path_goes_on);
   g_test_add_func("/regions/picture-end", a_path_leaves_the_picture);
   g_test_add_func("/regions/source", a_path_that_is_no_source);
   g_test_add_func("/regions/one", one_texture_has_none);
