@@ -81,7 +81,7 @@ static void take_samples(finder *f) {
   int width = f->flags->width, found = 0;
   size_t pixels = (size_t)width * (size_t)f->flags->height;
   for (size_t i = 0; i < pixels; i++) found += is_beside(f, i);
-  int step = (found + MOST_SAMPLES - 1) / MOST_SAMPLES;
+  int step = found / MOST_SAMPLES + 1;
   found = 0;
   for (size_t i = 0; i < pixels; i++) {
     if (!is_beside(f, i) || found++ % step) continue;
@@ -161,7 +161,7 @@ static int take_kin(const finder *f, uint8_t flag, rc_kin taken[PAIRS_EACH]) {
   size_t pixels = (size_t)f->flags->width * (size_t)f->flags->height, all = 0, seen = 0;
   int count = 0;
   for (size_t i = 0; i < pixels; i++) all += f->flags->data[i] & flag ? 1 : 0;
-  size_t step = (all + PAIRS_EACH - 1) / PAIRS_EACH;
+  size_t step = all / PAIRS_EACH + 1;
   for (size_t i = 0; i < pixels; i++)
     if (f->flags->data[i] & flag && seen++ % step == 0) taken[count++] = f->kin[i];
   return count;
