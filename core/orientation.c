@@ -17,9 +17,11 @@
 
 static int longer(int width, int height) { return width > height ? width : height; }
 
-/* The plane gets the frame's size and a focal length by the frame's field of view. */
-static recede_status estimate(rc_context *context, double fov_deg, const rc_views *views, int width,
-                              int height, const double on[2], recede_orientation *orientation) {
+/* From the source's pixels, where there is a source. The plane gets the frame's size and a focal
+ * length by the frame's field of view. */
+static recede_status read_plane(rc_context *context, double fov_deg, const rc_views *views,
+                                int width, int height, const double on[2],
+                                recede_orientation *orientation) {
   const recede_view *picture = views->image;
   int longest = longer(picture->width, picture->height);
   int factor = (longest + ESTIMATE_LONGEST_PX - 1) / ESTIMATE_LONGEST_PX;
@@ -30,7 +32,6 @@ static recede_status estimate(rc_context *context, double fov_deg, const rc_view
   RC_TRY(recede_plane_from_angles(width, height, 0, 0, fov_deg, &frame));
   double fov_of_picture = 2 * atan(.5 * longest / frame.focal_px) * (180 / 3.14159265358979323846);
   rc_block *mark = rc_mark(context);
-  RC_TRY(rc_stage(context, "orientation", 0, .03));
   RC_TRY(rc_shrink(context, views, factor, &image, &flags));
   RC_TRY(rc_estimate_plane(context, &image, &flags, fmax(fov_of_picture, 1),
                            views->mask ? small_on : NULL, plane, &orientation->confidence));
@@ -39,6 +40,26 @@ static recede_status estimate(rc_context *context, double fov_deg, const rc_view
   plane->width = width;
   plane->height = height;
   return RECEDE_OK;
+}
+
+/* Where the source does not say, all of the picture is asked: a source may leave out the edges of a
+ * pier, which tell where it leads. */
+static recede_status estimate(rc_context *context, double fov_deg, const rc_views *views, int width,
+                              int height, const double on[2], recede_orientation *orientation) {
+  rc_views all = *views;
+  recede_orientation of_all = *orientation;
+  RC_TRY(rc_stage(context, "orientation", 0, .03));
+  rc_block *mark = rc_mark(context);
+  recede_status status = read_plane(context, fov_deg, views, width, height, on, orientation);
+  bool read = status == RECEDE_OK;
+  if (!read && status != RECEDE_NO_PLANE) return status;
+  if (!views->source || (read && orientation->confidence >= RECEDE_CONFIDENCE_LOW)) return status;
+  rc_release(context, mark);
+  all.source = NULL;
+  status = read_plane(context, fov_deg, &all, width, height, on, &of_all);
+  if (status == RECEDE_OK && (!read || of_all.confidence >= RECEDE_CONFIDENCE_LOW))
+    *orientation = of_all;
+  return read && status == RECEDE_NO_PLANE ? RECEDE_OK : status;
 }
 
 static recede_status explain(rc_context *context, recede_status status, const char *what) {

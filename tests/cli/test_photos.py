@@ -24,6 +24,15 @@ def test_orient_reads_photos(folder):
         check(found["confidence"] > .5, name, found)
 
 
+def test_orient_looks_beside_the_source(folder):
+    """Planks alone do not tell where a pier leads; its edges do, which are no source."""
+    picture, source = IMAGES / "pier.jpg", folder / "planks.png"
+    planks = np.array([(564, 424), (648, 424), (960, 800), (204, 800)])
+    write(source, cv2.fillPoly(np.zeros((800, 1200), np.uint8), [planks], 255))
+    words = "orient", picture, "--mask", IMAGES / "pier-mask.png"
+    check(report_of(*words, "--source", source)["orientation"] == report_of(*words)["orientation"])
+
+
 def likeness(picture, other, box):
     """How well two pictures correlate in the box (top, bottom, left, right); joints count, light
     does not."""
