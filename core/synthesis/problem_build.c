@@ -174,8 +174,9 @@ static recede_status check_source(rc_context *context, const rc_problem *problem
   if (sources) return RECEDE_OK;
   return rc_fail(
       context, RECEDE_EMPTY_SOURCE,
-      "Nothing is left to copy from: no pixel outside the mask is opaque, finite, on the "
-      "plane and inside the source region. Mask less or widen the source region.");
+      "Nothing is left to copy from: no pixel more than %d px from the mask is opaque, finite, on "
+      "the plane and inside the source region. Mask less or widen the source region.",
+      UNTRUSTED_RING_PX);
 }
 
 recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
