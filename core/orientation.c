@@ -51,12 +51,17 @@ static recede_status estimate(rc_context *context, double fov_deg, const rc_view
   RC_TRY(rc_stage(context, "orientation", 0, .03));
   rc_block *mark = rc_mark(context);
   recede_status status = read_plane(context, fov_deg, views, width, height, on, orientation);
+  rc_release(context, mark);
   bool read = status == RECEDE_OK;
   if (!read && status != RECEDE_NO_PLANE) return status;
   if (!views->source || (read && orientation->confidence >= RECEDE_CONFIDENCE_LOW)) return status;
-  rc_release(context, mark);
   all.source = NULL;
   status = read_plane(context, fov_deg, &all, width, height, on, &of_all);
+  rc_release(context, mark);
+  if (status == RECEDE_OK && of_all.confidence >= RECEDE_CONFIDENCE_LOW)
+    rc_warn(context,
+            "The source does not tell how the plane lies: the orientation was read from all of the "
+            "picture. Give slant and tilt, or a horizon, if another plane is meant.");
   if (status == RECEDE_OK && (!read || of_all.confidence >= RECEDE_CONFIDENCE_LOW))
     *orientation = of_all;
   return read && status == RECEDE_NO_PLANE ? RECEDE_OK : status;

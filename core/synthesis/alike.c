@@ -28,13 +28,6 @@ typedef struct comparison {
   float most; /* square of the distance from which on looks are unlike */
 } comparison;
 
-static float distance_of(const rc_looks *p, const rc_looks *q) {
-  float sum = 0;
-  for (int k = 0; k < RC_LOOKS; k++)
-    sum += (p->value[k] - q->value[k]) * (p->value[k] - q->value[k]);
-  return sum;
-}
-
 static void take_samples(comparison *c) {
   int width = c->places.flags->width, found = 0;
   int32_t pixels = width * c->places.flags->height;
@@ -59,7 +52,7 @@ static float own_spread(const comparison *c, float *nearest) {
       int dx = c->sample_at[i] % width - c->sample_at[k] % width;
       int dy = c->sample_at[i] / width - c->sample_at[k] / width;
       if (abs(dx) <= 2 * RC_LOOKS_PX && abs(dy) <= 2 * RC_LOOKS_PX) continue;
-      least = fminf(least, distance_of(&c->sample[i], &c->sample[k]));
+      least = fminf(least, rc_looks_square(&c->sample[i], &c->sample[k]));
     }
     if (isfinite(least)) nearest[count++] = least;
   }
@@ -75,7 +68,7 @@ static void compare_row(void *user, int row, int thread) {
     int i = 0;
     rc_looks here;
     if (!rc_look_at_place(&c->places, column, row, &here)) continue;
-    while (i < c->sample_count && distance_of(&here, &c->sample[i]) > c->most) i++;
+    while (i < c->sample_count && rc_looks_square(&here, &c->sample[i]) > c->most) i++;
     c->places.unlike[row * c->places.columns + column] = i == c->sample_count;
   }
 }

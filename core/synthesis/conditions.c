@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "synthesis/focus.h"
+#include "synthesis/places.h"
 
 /* A copy may be more or less blurred than what it continues by so many octaves; more costs this per
  * square. */
@@ -78,23 +79,35 @@ static recede_status set_light(rc_context *context, table *t, bool *differs) {
   return RECEDE_OK;
 }
 
-/* A cell is all that its pixels are. */
+/* A cell is kin of all that any of its pixels is; what is neither source nor target says nothing.
+ */
+static rc_kin kin_of_cell(const rc_mask *coarsest, const rc_kin *kin, int shift, int column,
+                          int row) {
+  rc_kin of_all = 0;
+  bool any = false;
+  for (int y = row << shift; y < (row + 1) << shift && y < coarsest->height; y++)
+    for (int x = column << shift; x < (column + 1) << shift && x < coarsest->width; x++) {
+      if (!(*rc_flag(coarsest, x, y) & (RC_SOURCE | RC_TARGET))) continue;
+      of_all |= kin[(size_t)y * (size_t)coarsest->width + (size_t)x];
+      any = true;
+    }
+  return any ? of_all : RC_ALL_KIN;
+}
+
 static recede_status set_kin(rc_context *context, table *t, const rc_image *images,
                              const rc_mask *flags, int levels, bool *wanted) {
   const rc_mask *coarsest = &flags[levels - 1];
   int shift = t->exponent - (levels - 1);
-  rc_kin *kin;
+  rc_kin *kin = NULL;
   bool told = false;
-  if (*wanted) {
+  if (*wanted && rc_is_looked_at(coarsest)) {
     RC_TRY(RC_NEW(context, (size_t)coarsest->width * (size_t)coarsest->height, &kin));
     RC_TRY(rc_kin_find(context, &images[levels - 1], coarsest, kin, &told));
   }
-  for (int i = 0; !told && i < t->cells.width * t->cells.height; i++)
-    t->conditions[i].kin = RC_ALL_KIN;
-  for (int y = 0; told && y < coarsest->height; y++)
-    for (int x = 0; x < coarsest->width; x++)
-      t->conditions[(y >> shift) * t->cells.width + (x >> shift)].kin |=
-          kin[(size_t)y * (size_t)coarsest->width + (size_t)x];
+  for (int row = 0; row < t->cells.height; row++)
+    for (int column = 0; column < t->cells.width; column++)
+      t->conditions[row * t->cells.width + column].kin =
+          told ? kin_of_cell(coarsest, kin, shift, column, row) : RC_ALL_KIN;
   *wanted = told;
   return RECEDE_OK;
 }

@@ -142,7 +142,7 @@ recede_status rc_groups_smooth(rc_context *context, const rc_around *around, int
     for (int x = 0; x < around->width; x++) {
       size_t at = (size_t)y * (size_t)around->width + (size_t)x;
       int sum = 0;
-      if (!around->from_hole[at]) continue;
+      if (!(*rc_flag(around->flags, around->box.x0 + x, around->box.y0 + y) & RC_KNOWN)) continue;
       for (int j = y - HALF_PX; j <= y + HALF_PX; j++)
         for (int i = x - HALF_PX; i <= x + HALF_PX; i++)
           if (rc_inside(around->width, around->height, i, j))

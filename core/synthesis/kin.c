@@ -28,8 +28,8 @@
 /* There are several things where no more than this part of all pairs of a source and a target pixel
  * are kin: one texture has .75 to 1, hens, paths and walls .45 to .71. */
 #define MOST_KIN .72
-/* And these are the pairs, a grid of sources by one of target pixels. */
-#define PAIRS_EACH 1024
+/* Of so many sources and target pixels each, at the most. */
+#define MOST_EACH 1024
 
 typedef struct sample {
   int x, y;
@@ -47,15 +47,9 @@ typedef struct finder {
   rc_kin *kin;
 } finder;
 
-static float apart(const rc_looks *p, const rc_looks *q) {
-  float sum = 0;
-  for (int k = 0; k < RC_LOOKS; k++)
-    sum += (p->value[k] - q->value[k]) * (p->value[k] - q->value[k]);
-  return sum;
-}
-
-static int square_px(const sample *p, int x, int y) {
-  return (p->x - x) * (p->x - x) + (p->y - y) * (p->y - y);
+static int64_t square_px(const sample *p, int x, int y) {
+  int64_t dx = p->x - x, dy = p->y - y;
+  return dx * dx + dy * dy;
 }
 
 static recede_status measure_distances(rc_context *context, finder *f) {
@@ -93,16 +87,17 @@ static void take_samples(finder *f) {
 
 /* Each part has a sample far from all others' for its middle, and what is nearest to that. */
 static void divide(const finder *f) {
-  int square[MOST_SAMPLES], middle = 0;
-  for (int i = 0; i < f->count; i++) square[i] = INT32_MAX;
+  int64_t nearest[MOST_SAMPLES];
+  int middle = 0;
+  for (int i = 0; i < f->count; i++) nearest[i] = INT64_MAX;
   for (int part = 0; part < PARTS; part++) {
-    int farthest = middle;
+    int next = 0;
     for (int i = 0; i < f->count; i++) {
-      int here = square_px(&f->samples[middle], f->samples[i].x, f->samples[i].y);
-      if (here < square[i]) square[i] = here, f->samples[i].part = (rc_kin)1 << part;
-      if (square[i] > square[farthest]) farthest = i;
+      int64_t here = square_px(&f->samples[middle], f->samples[i].x, f->samples[i].y);
+      if (here < nearest[i]) nearest[i] = here, f->samples[i].part = (rc_kin)1 << part;
+      if (nearest[i] > nearest[next]) next = i;
     }
-    middle = farthest;
+    middle = next;
   }
 }
 
@@ -117,7 +112,7 @@ static float own_spread(const finder *f) {
       const sample *q = &f->samples[k];
       bool shares = abs(p->x - q->x) <= 2 * HALF_PX && abs(p->y - q->y) <= 2 * HALF_PX;
       if (!shares && square_px(p, q->x, q->y) <= OWN_PX * OWN_PX)
-        least = fminf(least, apart(&p->looks, &q->looks));
+        least = fminf(least, rc_looks_square(&p->looks, &q->looks));
     }
     if (isfinite(least)) nearest[count++] = least;
   }
@@ -131,7 +126,7 @@ static rc_kin kin_of_source(const finder *f, int x, int y) {
   rc_kin kin = 0;
   if (!rc_look(f->image, f->flags, x, y, HALF_PX, &looks)) return RC_ALL_KIN;
   for (int i = 0; i < f->count; i++)
-    if (!(kin & f->samples[i].part) && apart(&looks, &f->samples[i].looks) <= f->most)
+    if (!(kin & f->samples[i].part) && rc_looks_square(&looks, &f->samples[i].looks) <= f->most)
       kin |= f->samples[i].part;
   return kin;
 }
@@ -157,18 +152,18 @@ static void find_row(void *user, int y, int thread) {
 }
 
 /* Of one grid of the pixels with a flag. */
-static int take_kin(const finder *f, uint8_t flag, rc_kin taken[PAIRS_EACH]) {
+static int take_kin(const finder *f, uint8_t flag, rc_kin taken[MOST_EACH]) {
   size_t pixels = (size_t)f->flags->width * (size_t)f->flags->height, all = 0, seen = 0;
   int count = 0;
   for (size_t i = 0; i < pixels; i++) all += f->flags->data[i] & flag ? 1 : 0;
-  size_t step = all / PAIRS_EACH + 1;
+  size_t step = all / MOST_EACH + 1;
   for (size_t i = 0; i < pixels; i++)
     if (f->flags->data[i] & flag && seen++ % step == 0) taken[count++] = f->kin[i];
   return count;
 }
 
 static bool are_several(const finder *f) {
-  rc_kin source[PAIRS_EACH], target[PAIRS_EACH];
+  rc_kin source[MOST_EACH], target[MOST_EACH];
   int sources = take_kin(f, RC_SOURCE, source), targets = take_kin(f, RC_TARGET, target), kin = 0;
   for (int i = 0; i < sources; i++)
     for (int k = 0; k < targets; k++) kin += (source[i] & target[k]) != 0;
@@ -180,20 +175,16 @@ recede_status rc_kin_find(rc_context *context, const rc_image *image, const rc_m
   finder f = {.image = image, .flags = flags, .kin = kin};
   rc_block *mark = rc_mark(context);
   *told = false;
-  if (rc_is_looked_at(flags)) {
-    RC_TRY(measure_distances(context, &f));
-    RC_TRY(RC_NEW(context, MOST_SAMPLES, &f.samples));
-    take_samples(&f);
-    float own = TIMES_OWN * TIMES_OWN * own_spread(&f);
-    if (isfinite(own)) {
-      divide(&f);
-      f.most = fmaxf(own, LEAST_UNLIKE * LEAST_UNLIKE * (float)rc_source_variance(image, flags));
-      RC_TRY(rc_parallel(context, flags->height, find_row, &f));
-      *told = are_several(&f);
-    }
+  RC_TRY(measure_distances(context, &f));
+  RC_TRY(RC_NEW(context, MOST_SAMPLES, &f.samples));
+  take_samples(&f);
+  float own = TIMES_OWN * TIMES_OWN * own_spread(&f);
+  if (isfinite(own)) {
+    divide(&f);
+    f.most = fmaxf(own, LEAST_UNLIKE * LEAST_UNLIKE * (float)rc_source_variance(image, flags));
+    RC_TRY(rc_parallel(context, flags->height, find_row, &f));
+    *told = are_several(&f);
   }
-  for (size_t i = 0; !*told && i < (size_t)flags->width * (size_t)flags->height; i++)
-    kin[i] = RC_ALL_KIN;
   rc_release(context, mark);
   return RECEDE_OK;
 }

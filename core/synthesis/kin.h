@@ -13,9 +13,9 @@
 typedef uint32_t rc_kin;
 #define RC_ALL_KIN UINT32_MAX
 
-/* image and flags: the coarsest level; kin: of each of its pixels. told: enough of the sources are
- * no kin of so much of the hole that there must be several things; otherwise all are
- * RC_ALL_KIN. */
+/* image and flags: the coarsest level; kin: of each of its pixels. told: so many of the
+ * sources are no kin of so much of the hole that there must be several things; else all of kin is
+ * undefined. */
 recede_status rc_kin_find(rc_context *context, const rc_image *image, const rc_mask *flags,
                           rc_kin *kin, bool *told);
 

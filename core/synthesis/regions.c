@@ -65,6 +65,7 @@ static void spread(const finder *f, const rc_chords *c, bool doubtful, int32_t *
       if (rc_on_border(a, f->label, x, y) && is_doubtful(c, (float)x, (float)y) == doubtful)
         queue[last++] = y * a->width + x;
   *kept_apart = true;
+  size_t seeds = last;
   while (first < last) {
     int here = queue[first++];
     for (int k = 0; k < 4; k++) {
@@ -78,10 +79,11 @@ static void spread(const finder *f, const rc_chords *c, bool doubtful, int32_t *
       queue[last++] = next;
     }
   }
+  if (last == seeds) *kept_apart = false; /* nobody was asked */
 }
 
 /* Labels the hole. kept_apart: no two labels meet but at chords. Those in doubt are asked last,
- * for what only they lead to. Otherwise the hole's labels are taken away again. */
+ * for what only they lead to. Where they do meet the hole's labels are taken away again. */
 static recede_status label_hole(const finder *f, const rc_chords *c, bool *kept_apart) {
   int32_t *queue;
   bool unused;
