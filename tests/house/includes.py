@@ -2,28 +2,41 @@
 """The direction of includes, as TAP. Usage: includes.py PROJECT
 
 base <- image <- plane <- synthesis <- recede.c <- {cli, plugin}; kernels stand on base alone; the
-command and the plug-in see only recede.h.
+command and the plug-in see only recede.h. Within synthesis, above its own headers, sources <-
+structure <- search <- composition <- fill_plane.c, and paper by itself.
 """
 import re
 import sys
 from pathlib import Path
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
+# What all rooms of synthesis/ may include: what every method is asked, and the lower rooms.
+SHARED = {"synthesis", "plane", "image", "base", "kernels"}
+SOURCES = {"synthesis/sources"}
+STRUCTURE = {"synthesis/structure"} | SOURCES
+SEARCH = {"synthesis/search"} | STRUCTURE
+COMPOSITION = {"synthesis/composition"} | SEARCH
+PAPER = {"synthesis/paper"}
 # What the files of a room may include from core/, besides recede.h. "": core's own top level.
 MAY = {
     "base": {"base"},
     "kernels": {"kernels", "base"},
     "image": {"image", "base", "kernels"},
     "plane": {"plane", "image", "base", "kernels"},
-    "synthesis": {"synthesis", "plane", "image", "base", "kernels"},
-    "": {"", "synthesis", "plane", "image", "base", "kernels"},
+    "synthesis/sources": SHARED | SOURCES,
+    "synthesis/structure": SHARED | STRUCTURE,
+    "synthesis/search": SHARED | SEARCH,
+    "synthesis/composition": SHARED | COMPOSITION,
+    "synthesis/paper": SHARED | PAPER,
+    "synthesis": SHARED | COMPOSITION,
+    "": {""} | SHARED | PAPER,
 }
 PUBLIC = "recede.h"
 
 
 def core_room(path, core):
-    parts = path.relative_to(core).parts
-    return parts[0] if len(parts) > 1 else ""
+    folder = path.relative_to(core).parent.as_posix()
+    return "" if folder == "." else folder
 
 
 def target(source, name, project):

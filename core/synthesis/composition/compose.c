@@ -1,0 +1,344 @@
+#include "synthesis/composition/compose.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "synthesis/composition/misses.h"
+#include "synthesis/composition/relax.h"
+
+/* What an edge between two pixels counts in the join: a tile takes its neighbour's tone on up to
+ * its own joint, not across it. So within a copy an edge counts half where the copy changes as much
+ * as copies do in the mean. Between copies it counts whole: near the horizon, where hardly two
+ * pixels have one copy, those with contrast would else be levelled by those without. */
+#define LEAST_EDGE 1.f
+/* But no farther than this part of the hole, or a small one would have no tone of its own. */
+#define REACH_OF_HOLE .2f
+#define LEAST_REACH_PX 7.f
+/* Where the hole cuts through a thing that no copy continues, its colour must not shine into the
+ * hole: an edge to a known pixel that the copy misses by more than so many times the mean counts
+ * less, by the fourth power. From twice the mean on, by the square, texture lost its tone, too. */
+#define MISSES_BY 4.f
+/* What the border's misses do not have in common reaches so far: flowers that the border cuts do
+ * not shine, and what is off a little leaves no seam. */
+#define REACH_OF_THINGS_PX 3.f
+#define SWEEPS_OF_THINGS 8
+/* Sources finer than this many px per px, the mean of both directions, are sampled one level
+ * coarser. */
+#define MIP_AT 1.6f
+
+typedef struct row_sums {
+  double change, changes; /* of squares; how many */
+  double miss, misses;
+} row_sums;
+
+typedef struct composition {
+  const rc_level *level;
+  const rc_sampler *sampler;
+  const rc_image *mips;
+  int mip_count, channels;
+  rc_image *residual;
+  float *value;       /* the copies' own values, box by channels */
+  rc_relaxation join; /* what it adds to the values */
+  rc_misses misses;
+  float mean_change; /* square between neighbours, sum over channels */
+  float mean_miss;   /* how far copies are from the known pixels beside them, a distance */
+  row_sums *sums;
+} composition;
+
+static const int step_x[4] = {-1, 1, 0, 0}, step_y[4] = {0, 0, -1, 1};
+
+/* The texture that a copy puts at (x, y). */
+static void copy_value(const composition *c, rc_copy copy, int x, int y, float *value) {
+  const rc_chart *chart = &c->level->chart;
+  rc_place place = rc_copy_place(chart, copy, rc_level_x(c->level, x), rc_level_y(c->level, y));
+  float sx = place.x + chart->x0, sy = place.y + chart->y0, finer = place.ratio;
+  if (!chart->raised) finer *= sqrtf(finer); /* ratio across, ratio^2 along */
+  int mip = 0;
+  for (; mip + 1 < c->mip_count && finer > MIP_AT; mip++, finer *= .5f)
+    sx = (sx + .5f) * .5f - .5f, sy = (sy + .5f) * .5f - .5f;
+  rc_sample(c->sampler, &c->mips[mip], sx, sy, value);
+}
+
+static void sample_row(void *user, int item, int thread) {
+  const composition *c = user;
+  const rc_level *level = c->level;
+  int y = level->box.y0 + item;
+  (void)thread;
+  for (int x = level->box.x0; x < level->box.x1; x++) {
+    size_t at = rc_level_at(level, x, y);
+    float *value = c->value + at * (size_t)c->channels;
+    if (!rc_level_is_target(level, x, y)) continue;
+    if (isnan(level->field[at].a))
+      memset(value, 0, (size_t)c->channels * sizeof *value); /* no source: the tone alone */
+    else
+      copy_value(c, level->field[at], x, y, value);
+  }
+}
+
+static float change(const composition *c, const float *from, const float *to) {
+  float sum = 0.f;
+  for (int k = 0; k < c->channels; k++) sum += (to[k] - from[k]) * (to[k] - from[k]);
+  return sum;
+}
+
+static bool is_fixed(const rc_level *level, int x, int y) {
+  if (!rc_inside(level->width, level->height, x, y)) return false;
+  return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & (RC_TARGET | RC_KNOWN)) ==
+         RC_KNOWN;
+}
+
+/* What the copy of target (x, y) has to its side e, and by how much the pixel there is off it.
+ * False: that is no known pixel. */
+static bool miss_at(const composition *c, int x, int y, int e, float *there, float *miss) {
+  int nx = x + step_x[e], ny = y + step_y[e];
+  rc_copy own = c->level->field[rc_level_at(c->level, x, y)];
+  if (isnan(own.a) || !is_fixed(c->level, nx, ny)) return false;
+  copy_value(c, own, nx, ny, there);
+  for (int k = 0; k < c->channels; k++) miss[k] = rc_pixel(c->residual, nx, ny)[k] - there[k];
+  return true;
+}
+
+static float square_of(const composition *c, const float *miss) {
+  float square = 0.f;
+  for (int k = 0; k < c->channels; k++) square += miss[k] * miss[k];
+  return square;
+}
+
+static void sum_misses(const composition *c, int x, int y, row_sums *sums) {
+  float there[3], miss[3];
+  for (int e = 0; e < 4; e++)
+    if (miss_at(c, x, y, e, there, miss))
+      sums->miss += sqrt((double)square_of(c, miss)), sums->misses++;
+}
+
+static void sum_row(void *user, int item, int thread) {
+  const composition *c = user;
+  const rc_level *level = c->level;
+  row_sums sums = {0, 0, 0, 0};
+  int y = level->box.y0 + item;
+  (void)thread;
+  for (int x = level->box.x0; x < level->box.x1; x++) {
+    if (!rc_level_is_target(level, x, y)) continue;
+    const float *value = c->value + rc_level_at(level, x, y) * (size_t)c->channels;
+    const float *below = value + (size_t)level->box_w * (size_t)c->channels;
+    if (x + 1 < level->box.x1 && rc_level_is_target(level, x + 1, y))
+      sums.change += (double)change(c, value, value + c->channels), sums.changes++;
+    if (y + 1 < level->box.y1 && rc_level_is_target(level, x, y + 1))
+      sums.change += (double)change(c, value, below), sums.changes++;
+    sum_misses(c, x, y, &sums);
+  }
+  c->sums[item] = sums;
+}
+
+static recede_status set_means(rc_context *context, composition *c) {
+  row_sums all = {0, 0, 0, 0};
+  RC_TRY(RC_NEW(context, c->level->box_h, &c->sums));
+  RC_TRY(rc_parallel(context, c->level->box_h, sum_row, c));
+  for (int row = 0; row < c->level->box_h; row++) {
+    all.change += c->sums[row].change, all.changes += c->sums[row].changes;
+    all.miss += c->sums[row].miss, all.misses += c->sums[row].misses;
+  }
+  c->mean_change = all.changes > 0 ? (float)(all.change / all.changes) : 0.f;
+  c->mean_miss = all.misses > 0 ? (float)(all.miss / all.misses) : 0.f;
+  return RECEDE_OK;
+}
+
+/* Of the edge between two pixels of one copy. */
+static uint8_t count_of(const composition *c, const float *from, const float *to) {
+  float changed = change(c, from, to);
+  float part = c->mean_change > 0.f ? changed / c->mean_change : 0.f;
+  float counts = RC_WHOLE_EDGE / (1.f + part);
+  return (uint8_t)(counts > LEAST_EDGE ? counts : LEAST_EDGE);
+}
+
+/* Of the edge to a known pixel, which is off what the copy has there. */
+static uint8_t count_of_fixed(const composition *c, const float *value, const float *there,
+                              const float *miss) {
+  float counts = (float)count_of(c, value, there), most = MISSES_BY * c->mean_miss;
+  float missed = most > 0.f ? square_of(c, miss) / (most * most) : 0.f;
+  if (missed > 1.f) counts /= missed * missed;
+  return (uint8_t)(counts > LEAST_EDGE ? counts : LEAST_EDGE);
+}
+
+/* What the edge to side e counts, and adds what it asks of pixel (x, y) beyond what the copies'
+ * values give already; of a known pixel, which is fixed, the tone alone. */
+static uint8_t add_edge(const composition *c, int x, int y, int e, const float *value,
+                        float *drive) {
+  const rc_level *level = c->level;
+  int nx = x + step_x[e], ny = y + step_y[e];
+  rc_copy own = level->field[rc_level_at(level, x, y)];
+  float there[3], back[3], miss[3], tone[3];
+  if (miss_at(c, x, y, e, there, miss)) { /* the copy's own gradient */
+    uint8_t counts = count_of_fixed(c, value, there, miss);
+    rc_misses_tone(&c->misses, x, y, miss, tone);
+    for (int k = 0; k < c->channels; k++) drive[k] += (float)counts * tone[k];
+    return counts;
+  }
+  if (!rc_inside(level->width, level->height, nx, ny) || !rc_level_is_target(level, nx, ny))
+    return 0;
+  size_t at = rc_level_at(level, nx, ny);
+  rc_copy other = level->field[at];
+  const float *neighbour = c->value + at * (size_t)c->channels;
+  if (isnan(other.a) || rc_same_copy(own, other)) return count_of(c, value, neighbour);
+  copy_value(c, own, nx, ny, there);
+  copy_value(c, other, x, y, back);
+  for (int k = 0; k < c->channels; k++) {
+    float across = .5f * ((value[k] - there[k]) + (back[k] - neighbour[k]));
+    drive[k] += RC_WHOLE_EDGE * (across - (value[k] - neighbour[k]));
+  }
+  return (uint8_t)RC_WHOLE_EDGE;
+}
+
+static void set_drive(const composition *c, int x, int y, const float *drive) {
+  int parity = (x - c->level->box.x0) & 1, column = (x - c->level->box.x0) / 2;
+  for (int k = 0; k < c->channels; k++)
+    c->join.drive[rc_half_row(&c->join, y - c->level->box.y0, parity, k) + (size_t)column] =
+        drive[k];
+}
+
+/* The join's index of the edges of (x, y). */
+static size_t edge_at(const composition *c, int x, int y) {
+  int parity = (x - c->level->box.x0) & 1, column = (x - c->level->box.x0) / 2;
+  return rc_half_edges(&c->join, y - c->level->box.y0, parity) + (size_t)column;
+}
+
+static void drive_row(void *user, int item, int thread) {
+  const composition *c = user;
+  const rc_level *level = c->level;
+  int y = level->box.y0 + item;
+  (void)thread;
+  for (int x = level->box.x0; x < level->box.x1; x++) {
+    size_t at = rc_level_at(level, x, y), edge = edge_at(c, x, y);
+    float drive[3] = {0, 0, 0};
+    if (!rc_level_is_target(level, x, y) || isnan(level->field[at].a)) continue;
+    for (int e = 0; e < 4; e++)
+      c->join.edges[e][edge] = add_edge(c, x, y, e, c->value + at * (size_t)c->channels, drive);
+    set_drive(c, x, y, drive);
+  }
+}
+
+/* What is left of the border's misses without their tone. */
+static void drive_things_row(void *user, int item, int thread) {
+  const composition *c = user;
+  int y = c->level->box.y0 + item;
+  (void)thread;
+  for (int x = c->level->box.x0; x < c->level->box.x1; x++) {
+    float drive[3] = {0, 0, 0}, there[3], miss[3], tone[3];
+    if (!rc_level_is_target(c->level, x, y)) continue;
+    for (int e = 0; e < 4; e++) {
+      if (!miss_at(c, x, y, e, there, miss)) continue;
+      rc_misses_tone(&c->misses, x, y, miss, tone);
+      float counts = (float)c->join.edges[e][edge_at(c, x, y)];
+      for (int k = 0; k < c->channels; k++) drive[k] += counts * (miss[k] - tone[k]);
+    }
+    set_drive(c, x, y, drive);
+  }
+}
+
+/* Adds what was solved to the values, and begins anew. */
+static void correct_row(void *user, int item, int thread) {
+  const composition *c = user;
+  const rc_level *level = c->level;
+  (void)thread;
+  for (int x = level->box.x0; x < level->box.x1; x++) {
+    int parity = (x - level->box.x0) & 1, column = (x - level->box.x0) / 2;
+    float *value = c->value + rc_level_at(level, x, level->box.y0 + item) * (size_t)c->channels;
+    for (int k = 0; k < c->channels; k++) {
+      float *solved = c->join.unknown + rc_half_row(&c->join, item, parity, k) + column;
+      value[k] += *solved, *solved = 0;
+    }
+  }
+}
+
+static bool touches_known(const composition *c, int x, int y) {
+  for (int e = 0; e < 4; e++)
+    if (is_fixed(c->level, x + step_x[e], y + step_y[e])) return rc_level_is_target(c->level, x, y);
+  return false;
+}
+
+/* Indices of the box's pixels that touch known ones, in order; border NULL: only how many. */
+static recede_status collect_border(rc_context *context, const composition *c, int32_t *border,
+                                    int *count) {
+  const rc_box *box = &c->level->box;
+  *count = 0;
+  for (int y = box->y0; y < box->y1; y++) {
+    for (int x = box->x0; x < box->x1; x++) {
+      if (!touches_known(c, x, y)) continue;
+      if (border) border[*count] = (int32_t)rc_level_at(c->level, x, y);
+      ++*count;
+    }
+    RC_TRY(rc_poll(context));
+  }
+  return RECEDE_OK;
+}
+
+static recede_status find_tone_of_misses(rc_context *context, composition *c) {
+  const rc_level *level = c->level;
+  float there[3], miss[3];
+  int32_t *border;
+  int count;
+  RC_TRY(rc_misses_new(context, level->box, c->channels, c->mean_miss, &c->misses));
+  RC_TRY(collect_border(context, c, NULL, &count));
+  RC_TRY(RC_NEW(context, count + 1, &border));
+  RC_TRY(collect_border(context, c, border, &count));
+  for (int round = 0; round < RC_MISS_ROUNDS; round++) {
+    for (int i = 0; i < count; i++) {
+      int x = level->box.x0 + border[i] % level->box_w,
+          y = level->box.y0 + border[i] / level->box_w;
+      for (int e = 0; e < 4; e++)
+        if (miss_at(c, x, y, e, there, miss)) rc_misses_add(&c->misses, x, y, miss);
+    }
+    rc_misses_settle(&c->misses);
+    RC_TRY(rc_poll(context));
+  }
+  RC_FREE(context, &border);
+  return RECEDE_OK;
+}
+
+static recede_status solve_join(rc_context *context, const rc_join *join, composition *c) {
+  int rows = c->level->box_h, columns = c->level->box_w;
+  float of_hole = REACH_OF_HOLE * (float)(rows < columns ? rows : columns);
+  float reach_px = fminf(join->reach_px, fmaxf(of_hole, LEAST_REACH_PX));
+  RC_TRY(rc_relaxation_new(context, columns, rows, c->channels, &c->join));
+  RC_TRY(set_means(context, c));
+  RC_TRY(find_tone_of_misses(context, c));
+  RC_TRY(rc_parallel(context, rows, drive_row, c));
+  RC_TRY(rc_relax(context, reach_px, join->sweeps, &c->join));
+  RC_TRY(rc_parallel(context, rows, correct_row, c));
+  RC_TRY(rc_parallel(context, rows, drive_things_row, c));
+  RC_TRY(rc_relax(context, REACH_OF_THINGS_PX, SWEEPS_OF_THINGS, &c->join));
+  return rc_parallel(context, rows, correct_row, c);
+}
+
+static void write_row(void *user, int item, int thread) {
+  const composition *c = user;
+  const rc_level *level = c->level;
+  int y = level->box.y0 + item;
+  (void)thread;
+  for (int x = level->box.x0; x < level->box.x1; x++) {
+    const float *value = c->value + rc_level_at(level, x, y) * (size_t)c->channels;
+    if (rc_level_is_target(level, x, y))
+      memcpy(rc_pixel(c->residual, x, y), value, (size_t)c->channels * sizeof *value);
+  }
+}
+
+recede_status rc_compose(rc_context *context, const rc_level *level, const rc_sampler *sampler,
+                         const rc_image *mips, int mip_count, const rc_join *join,
+                         rc_image *residual) {
+  composition c = {.level = level,
+                   .sampler = sampler,
+                   .mips = mips,
+                   .mip_count = mip_count,
+                   .channels = residual->channels,
+                   .residual = residual};
+  size_t values = (size_t)level->box_w * (size_t)level->box_h * (size_t)c.channels;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, values, &c.value));
+  RC_TRY(rc_parallel(context, level->box_h, sample_row, &c));
+  if (join) RC_TRY(solve_join(context, join, &c));
+  RC_TRY(rc_parallel(context, level->box_h, write_row, &c));
+  rc_release(context, mark);
+  return RECEDE_OK;
+}

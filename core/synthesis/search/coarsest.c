@@ -1,0 +1,252 @@
+#include "synthesis/search/coarsest.h"
+
+#include <math.h>
+
+#include "base/memory.h"
+#include "base/random.h"
+#include "synthesis/search/boards.h"
+#include "synthesis/search/effort.h"
+#include "synthesis/search/kept.h"
+#include "synthesis/search/lattice_find.h"
+#include "synthesis/search/lock.h"
+#include "synthesis/search/search.h"
+#include "synthesis/search/start.h"
+#include "synthesis/search/trial.h"
+#include "synthesis/search/whole.h"
+
+/* Broken lines are seen first: they cost on top of a start's misfit. Starts that continue them may
+ * fit worse, for finer levels break what the coarsest still has, and thin lines are faint there: a
+ * crack across a road without dashes to copy 1.4 to 1.7 times as badly. */
+#define PRICE_OF_BROKEN_LINES .3
+#define FAVOUR_OF_RAILS 1.3
+#define FAVOUR_OF_LINES 1.8
+#define FAVOUR_OF_CLEAR_LINES 2.
+/* A lattice costs tiles and old roofs .7 to 1.1 of what any copies do, stones that only lie in rows
+ * .6 to 1.4, roof tiles that are all alike 1.6 and more: they keep in order by themselves. */
+#define FAVOUR_OF_LATTICE 1.3
+/* What comes from another board is not what this one shows again and again beside the hole. */
+#define FAVOUR_OF_BOARDS 1.25
+/* Moves along the rails are of so many px and more, nearest first, as many as whole.c looks at; and
+ * so many target pixels may find nothing along them: they go on from what lies beside them. Of a
+ * pier as wide as its source mask that is .02, at its far end. */
+#define LEAST_MOVE_PX 6
+#define MOST_WITHOUT_COPY .06
+/* Boards have so many times the copies, for each has its own. */
+#define EACH_BOARD 3
+
+/* Some of all trials: starts by patches first, then those of few whole copies, which are these
+ * moves or, where there are none, chance ones. */
+typedef struct starts {
+  int first, first_whole, end;
+  const rc_copy *moves;
+  int move_count;
+} starts;
+
+static recede_status start_once(rc_context *context, const rc_descent *e, const starts *s,
+                                int trial, rc_level *level) {
+  static const int copies[] = {16, 8, 4};
+  rc_search search = {.kernels = e->kernels,
+                      .key = rc_key((uint64_t)e->params->seed, 99, (uint32_t)trial),
+                      .periods = e->periods,
+                      .period_count = e->period_count,
+                      .anywhere = rc_effort_of(e->params)->start_tries};
+  if (trial < s->first_whole) return rc_start(context, level, &search);
+  return rc_start_whole(context, level, search.key, s->moves, s->move_count,
+                        (level->board ? EACH_BOARD : 1) * copies[(trial - s->first_whole) % 3]);
+}
+
+/* All trials get a third of their iterations, the better half of them the rest. Of two both get
+ * all: a third of a draft's few says too little. */
+static int first_part(int iterations) { return (iterations + 2) / 3; }
+static int better_half(int trials) { return trials <= 2 ? trials : (trials + 1) / 2; }
+static int work_of(int trials, int iterations) {
+  int part = first_part(iterations);
+  return trials * part + better_half(trials) * (iterations - part);
+}
+
+/* Keeps the start that fits best, and its misfit. */
+static recede_status try_starts(rc_context *context, const rc_descent *e, const starts *s,
+                                rc_pace *p, rc_level *level, rc_workspace *scratch, rc_trial *best,
+                                double *least) {
+  int exponent = e->level_count - 1, count = s->end - s->first;
+  int iterations = rc_iterations_at(e, exponent), part = first_part(iterations);
+  rc_trial *trials;
+  double *misfits;
+  RC_TRY(RC_NEW(context, count, &trials));
+  RC_TRY(RC_NEW(context, count, &misfits));
+  for (int n = 0; n < count; n++) {
+    RC_TRY(rc_trial_new(context, level, &trials[n]));
+    RC_TRY(start_once(context, e, s, s->first + n, level));
+    RC_TRY(rc_iterate(context, e, exponent, s->first + n, 0, part, p, level, scratch));
+    misfits[n] = rc_misfit(level);
+    rc_trial_save(level, &trials[n]);
+  }
+  *least = INFINITY;
+  for (int k = 0; k < better_half(count); k++) {
+    int n = 0;
+    for (int i = 1; i < count; i++)
+      if (misfits[i] < misfits[n]) n = i;
+    misfits[n] = INFINITY;
+    rc_trial_restore(level, &trials[n]);
+    RC_TRY(rc_iterate(context, e, exponent, s->first + n, part, iterations, p, level, scratch));
+    double misfit = rc_misfit(level);
+    if (misfit >= *least) continue;
+    *least = misfit;
+    rc_trial_save(level, best);
+  }
+  return RECEDE_OK;
+}
+
+/* Of a trial, which the level then holds. */
+static double price_of_broken_lines(const rc_descent *e, rc_level *level, const rc_trial *trial) {
+  rc_trial_restore(level, trial);
+  return PRICE_OF_BROKEN_LINES *
+         (1 - rc_lines_kept(level, e->lines, e->line_count, e->level_count - 1));
+}
+
+static bool nearly_all_have_copies(const rc_level *level) {
+  int targets = 0, without = 0;
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      if (!rc_level_is_target(level, x, y)) continue;
+      targets++;
+      without += isnan(level->field[rc_level_at(level, x, y)].a);
+    }
+  return without <= MOST_WITHOUT_COPY * targets;
+}
+
+static recede_status moves_along(rc_context *context, const rc_descent *e, const rc_level *level,
+                                 const rc_copy **moves, int *count) {
+  rc_copy *made;
+  rc_rails rails = rc_rails_coarser(e->rails, e->level_count - 1);
+  int each = 2 * (2 * rails.rows + 1), most = level->width + level->height - LEAST_MOVE_PX;
+  if (most > RC_WHOLE_CANDIDATES / each) most = RC_WHOLE_CANDIDATES / each;
+  *count = 0;
+  RC_TRY(RC_NEW(context, each * most, &made));
+  for (int px = LEAST_MOVE_PX; px < LEAST_MOVE_PX + most; px++)
+    for (int sign = -1; sign <= 1; sign += 2)
+      for (int row = -rails.rows; row <= rails.rows; row++) {
+        float along = (float)(sign * px), across = (float)row * rails.gauge;
+        made[(*count)++] =
+            rc_copy_of_move(&level->chart, 0.f, 0.f, along * rails.a - across * rails.b,
+                            along * rails.b + across * rails.a);
+      }
+  *moves = made;
+  return RECEDE_OK;
+}
+
+/* Starts that keep to the rails, from the trial first on; *own: what the best of them, which the
+ * level then holds, costs. */
+static recede_status start_on_rails(rc_context *context, const rc_descent *e, int first, int count,
+                                    rc_pace *p, rc_level *level, rc_workspace *scratch,
+                                    rc_trial *best, double *own) {
+  starts s = {first, first, first + count, NULL, 0};
+  RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
+  RC_TRY(try_starts(context, e, &s, p, level, scratch, best, own));
+  *own += price_of_broken_lines(e, level, best);
+  if (!nearly_all_have_copies(level)) *own = INFINITY;
+  return RECEDE_OK;
+}
+
+/* Along the rails alone and, where boards have one width, board by board. misfit: of the best start
+ * so far. */
+static recede_status try_rails(rc_context *context, rc_descent *e, int first, int count, rc_pace *p,
+                               rc_level *level, rc_workspace *scratch, double misfit) {
+  rc_trial along, across;
+  double own, own_across = INFINITY;
+  int rows = e->rails.rows;
+  RC_TRY(rc_trial_new(context, level, &along));
+  RC_TRY(rc_trial_new(context, level, &across));
+  RC_TRY(rc_boards_mark(context, &e->rails, e->level_count - 1, level));
+  uint8_t *board = level->board;
+  e->on_rails = true;
+  if (rows)
+    RC_TRY(start_on_rails(context, e, first, count, p, level, scratch, &across, &own_across));
+  e->rails.rows = 0, level->board = NULL;
+  RC_TRY(start_on_rails(context, e, first, count, p, level, scratch, &along, &own));
+  if (rows && own_across < FAVOUR_OF_BOARDS * own) {
+    own = own_across;
+    e->rails.rows = rows, level->board = board;
+    rc_trial_restore(level, &across);
+  }
+  e->on_rails = own < FAVOUR_OF_RAILS * misfit;
+  if (!e->on_rails) level->board = NULL;
+  return RECEDE_OK;
+}
+
+/* Starts with the lines locked. */
+static recede_status try_lines(rc_context *context, rc_descent *e, const starts *s, rc_pace *p,
+                               rc_level *level, rc_workspace *scratch, double misfit) {
+  rc_trial best;
+  double own;
+  RC_TRY(rc_trial_new(context, level, &best));
+  RC_TRY(rc_lines_lock(context, e->lines, e->line_count, e->level_count - 1, level));
+  RC_TRY(try_starts(context, e, s, p, level, scratch, &best, &own));
+  own += price_of_broken_lines(e, level, &best);
+  bool clear = e->lines[0].strength >= RC_CLEAR_STRENGTH;
+  e->continue_lines = own < (clear ? FAVOUR_OF_CLEAR_LINES : FAVOUR_OF_LINES) * misfit;
+  if (!e->continue_lines) RC_FREE(context, &level->locked);
+  return RECEDE_OK;
+}
+
+/* Starts that keep to the lattice, which lies flat. */
+static recede_status try_lattice(rc_context *context, rc_descent *e, int first, int count,
+                                 rc_pace *p, rc_level *level, rc_workspace *scratch,
+                                 double misfit) {
+  starts s = {first, first + count, first + count, NULL, 0};
+  rc_trial best;
+  double own;
+  bool raised = level->chart.raised;
+  RC_TRY(rc_trial_new(context, level, &best));
+  level->lattice = e->lattice;
+  if (e->params->surface != RECEDE_SURFACE_RAISED) level->chart.raised = false;
+  RC_TRY(try_starts(context, e, &s, p, level, scratch, &best, &own));
+  if (e->line_count) own += price_of_broken_lines(e, level, &best);
+  e->on_lattice = own < FAVOUR_OF_LATTICE * misfit;
+  if (e->on_lattice)
+    rc_trial_restore(level, &best);
+  else
+    level->chart.raised = raised, level->lattice = (rc_lattice){.spacing = 1};
+  e->chart.raised = level->chart.raised;
+  return RECEDE_OK;
+}
+
+recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *level,
+                              rc_workspace *scratch) {
+  int exponent = e->level_count - 1, wanted = e->params->engine_starts;
+  int plain = rc_trials_worth(level, wanted ? wanted : rc_effort_of(e->params)->starts);
+  int half = (plain + 1) / 2, iterations = rc_iterations_at(e, exponent);
+  uint64_t key = rc_key((uint64_t)e->params->seed, 99, 0);
+  double misfit;
+  rc_trial best;
+  if (e->params->engine_periods)
+    RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count, &e->repeats));
+  if (e->params->engine_lattice)
+    RC_TRY(rc_lattice_find(context, level, e->periods, e->period_count, &e->bends, &e->lattice));
+  /* Where lines cross the hole there are things that go on as a whole. But whole copies that break
+   * lines fit well, and must not win over those that continue them. */
+  int with_lines = e->line_count ? half : 0, on_rails = rc_runs(&e->rails) ? half : 0;
+  int rails_tried = e->rails.rows ? 2 : 1;
+  int in_lattice = rc_has_lattice(&e->lattice) && !on_rails && plain > 1 ? half : 0;
+  if (in_lattice) plain = half;
+  int trials = plain + with_lines, whole = e->params->engine_whole ? with_lines / 2 : 0;
+  starts by_chance = {0, plain, plain, NULL, 0};
+  starts along_lines = {plain, trials - whole, trials, NULL, 0};
+  if (trials == 1 && !in_lattice) {
+    rc_pace p = {0, iterations};
+    RC_TRY(start_once(context, e, &by_chance, 0, level));
+    return rc_iterate(context, e, exponent, 0, 0, iterations, &p, level, scratch);
+  }
+  rc_pace p = {0, work_of(plain, iterations) + work_of(with_lines, iterations) +
+                      work_of(in_lattice, iterations) +
+                      rails_tried * work_of(on_rails, iterations)};
+  RC_TRY(rc_trial_new(context, level, &best));
+  RC_TRY(try_starts(context, e, &by_chance, &p, level, scratch, &best, &misfit));
+  if (e->line_count) misfit += price_of_broken_lines(e, level, &best);
+  if (on_rails) RC_TRY(try_rails(context, e, trials, on_rails, &p, level, scratch, misfit));
+  if (in_lattice) RC_TRY(try_lattice(context, e, trials, in_lattice, &p, level, scratch, misfit));
+  if (e->line_count && !e->on_rails && !e->on_lattice)
+    RC_TRY(try_lines(context, e, &along_lines, &p, level, scratch, misfit));
+  if (!e->on_rails && !e->continue_lines && !e->on_lattice) rc_trial_restore(level, &best);
+  return RECEDE_OK;
+}

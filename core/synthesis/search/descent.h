@@ -1,0 +1,41 @@
+/* The coarse-to-fine loop: start at the coarsest level, then search and vote in turn at each. */
+#ifndef RECEDE_SYNTHESIS_SEARCH_DESCENT_H
+#define RECEDE_SYNTHESIS_SEARCH_DESCENT_H
+
+#include "synthesis/search/level.h"
+#include "synthesis/search/periods.h"
+#include "synthesis/search/traits.h"
+#include "synthesis/structure/lattice.h"
+#include "synthesis/structure/lines.h"
+#include "synthesis/structure/rails.h"
+
+#define RC_MAX_LEVELS 10
+
+typedef struct rc_descent {
+  const recede_params *params;
+  const rc_kernels *kernels;
+  rc_chart chart; /* of the finest level */
+  float gain;     /* of the bytes */
+  int level_count;
+  rc_image images[RC_MAX_LEVELS];
+  rc_mask flags[RC_MAX_LEVELS];
+  rc_traits traits[RC_MAX_LEVELS];
+  rc_copy periods[RC_MOST_PERIODS]; /* px of the coarsest level */
+  int period_count;
+  rc_lattice lattice;               /* px of the coarsest level */
+  rc_bends bends;                   /* the lattice's */
+  bool repeats;                     /* as rc_find_periods says */
+  rc_crossing lines[RC_MOST_LINES]; /* px of the finest level */
+  int line_count;
+  rc_rails rails;
+  rc_conditions conditions;                  /* of the finest level */
+  rc_sides sides;                            /* of the finest level */
+  bool on_rails, on_lattice, continue_lines; /* starts that kept to them fitted well enough */
+  int cut_level; /* the coarsest where seams are led by cuts; level_count: nowhere */
+  uint64_t rest; /* out: pixels that only continue what lies beside them */
+} rc_descent;
+
+/* Makes the finest level, its field settled into whole copies. Progress .1 .. .8. */
+recede_status rc_descend(rc_context *context, rc_descent *descent, rc_level *finest);
+
+#endif

@@ -1,0 +1,18 @@
+/* Where two textures meet in a straight line that crosses the hole: a road and its verge, a wall
+ * and the roof it stands on. The line is moved in as other lines are, and what lies to one side of
+ * it is copied from that side. */
+#ifndef RECEDE_SYNTHESIS_STRUCTURE_BOUNDARY_H
+#define RECEDE_SYNTHESIS_STRUCTURE_BOUNDARY_H
+
+#include "synthesis/structure/rails.h"
+
+/* Looks for one. It joins the lines, of which only those parallel to it stay, and of these not
+ * those of a texture that repeats; a texture that runs another way than it does no longer runs.
+ * Without one, or where the texture runs along it, all stays as it is, and the boundary is all 0.
+ * images and masks: the pyramid's levels, finest first; from: what rc_lines_level says. */
+recede_status rc_boundary_find(rc_context *context, const rc_image *images, const rc_mask *masks,
+                               int levels, int from, const rc_chart *chart,
+                               rc_crossing lines[RC_MOST_LINES], int *count, rc_rails *rails,
+                               rc_boundary *boundary);
+
+#endif

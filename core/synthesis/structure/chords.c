@@ -1,0 +1,228 @@
+#include "synthesis/structure/chords.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+/* Each of them has so much of the hole's border. */
+#define LEAST_SHARE .1
+/* Two changes so near to each other are a spur of one texture (or lie on two parts of the hole that
+ * nearly touch: then nothing is told). */
+#define APART_PX 6.f
+/* A change's direction is that of the edge so far outwards. */
+#define FOLLOWED_PX 7.f
+/* Chords may turn from the edges' directions: 1 - cos at both ends together. A right angle cut by a
+ * chord has .6; real ones had up to .2, chance ones from .76 on. */
+#define MOST_TURN .7f
+/* An edge that goes straight on out of the picture, where the hole does, counts as so much. */
+#define TURN_OF_LEAVING .35f
+/* Edges of one thing that leave may get so many times as far from each other, in the plane. */
+#define MOST_OPENING 1.5f
+/* The border is so wide. */
+#define BORDER_PX 2
+
+typedef struct finder {
+  const rc_around *around;
+  const rc_chart *chart;
+  const int8_t *label;
+} finder;
+
+bool rc_on_border(const rc_around *around, const int8_t *label, int x, int y) {
+  size_t at = (size_t)y * (size_t)around->width + (size_t)x;
+  return rc_inside(around->width, around->height, x, y) && label[at] && around->from_hole[at] &&
+         around->from_hole[at] <= BORDER_PX;
+}
+
+static bool differ(const finder *f, int x, int y, int label) {
+  const rc_around *a = f->around;
+  return rc_inside(a->width, a->height, x, y) &&
+         f->label[(size_t)y * (size_t)a->width + (size_t)x] == -label;
+}
+
+/* Whether a pixel of the border touches one with the other label. */
+static bool changes_at(const finder *f, int x, int y) {
+  int label = f->label[(size_t)y * (size_t)f->around->width + (size_t)x];
+  for (int j = y - 1; j <= y + 1; j++)
+    for (int i = x - 1; i <= x + 1; i++)
+      if (rc_on_border(f->around, f->label, i, j) && differ(f, i, j, label)) return true;
+  return false;
+}
+
+/* The change that a pixel is part of: the middle of those that touch one another in left, from
+ * which they are taken. */
+static rc_change collect(const finder *f, int32_t pixel, uint8_t *left, int32_t *stack) {
+  int width = f->around->width, depth = 0;
+  float x = 0, y = 0, count = 0;
+  stack[depth++] = pixel, left[pixel] = 0;
+  while (depth) {
+    int here = stack[--depth], hx = here % width, hy = here / width;
+    x += (float)hx, y += (float)hy, count++;
+    for (int j = hy - 1; j <= hy + 1; j++)
+      for (int i = hx - 1; i <= hx + 1; i++) {
+        if (!rc_inside(width, f->around->height, i, j) || !left[j * width + i]) continue;
+        stack[depth++] = j * width + i, left[j * width + i] = 0;
+      }
+  }
+  return (rc_change){x / count, y / count, 0, 0};
+}
+
+/* Looks outwards where the edge leads. */
+static void follow(const finder *f, rc_change *c) {
+  const rc_around *a = f->around;
+  int reach = (int)FOLLOWED_PX, cx = (int)(c->x + .5f), cy = (int)(c->y + .5f);
+  for (int y = cy - reach; y <= cy + reach; y++)
+    for (int x = cx - reach; x <= cx + reach; x++) {
+      float dx = (float)x - c->x, dy = (float)y - c->y;
+      if (!rc_inside(a->width, a->height, x, y) || dx * dx + dy * dy > FOLLOWED_PX * FOLLOWED_PX)
+        continue;
+      size_t at = (size_t)y * (size_t)a->width + (size_t)x;
+      int label = a->from_hole[at] ? f->label[at] : 0;
+      if (!label || !(differ(f, x - 1, y, label) || differ(f, x + 1, y, label) ||
+                      differ(f, x, y - 1, label) || differ(f, x, y + 1, label)))
+        continue;
+      c->ux += dx, c->uy += dy;
+    }
+  float length = sqrtf(c->ux * c->ux + c->uy * c->uy);
+  bool leads = length > .5f; /* px; else it leads nowhere */
+  c->ux = leads ? c->ux / length : 0, c->uy = leads ? c->uy / length : 0;
+}
+
+/* Takes pairs of changes that are spurs out. */
+static void drop_spurs(rc_change changes[RC_MOST_CHANGES], int *count) {
+  for (int i = 0; i < *count; i++)
+    for (int k = i + 1; k < *count; k++) {
+      if (rc_apart(&changes[i], &changes[k]) >= APART_PX) continue;
+      changes[k] = changes[--*count];
+      changes[i] = changes[--*count];
+      i = -1;
+      break;
+    }
+}
+
+/* None where there are more than can be told, or one texture has hardly any border. */
+static recede_status find_changes(rc_context *context, const finder *f, rc_chords *chords) {
+  const rc_around *a = f->around;
+  int *count = &chords->change_count;
+  uint8_t *left;
+  int32_t *stack;
+  double border = 0, first = 0;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW_ZERO(context, a->pixels, &left));
+  RC_TRY(RC_NEW(context, a->pixels, &stack));
+  for (int y = 0; y < a->height; y++)
+    for (int x = 0; x < a->width; x++) {
+      if (!rc_on_border(a, f->label, x, y)) continue;
+      border++, first += f->label[y * a->width + x] > 0;
+      left[y * a->width + x] = changes_at(f, x, y);
+    }
+  for (size_t i = 0; i < a->pixels && *count < RC_MOST_CHANGES; i++)
+    if (left[i]) chords->changes[(*count)++] = collect(f, (int32_t)i, left, stack);
+  rc_release(context, mark);
+  if (*count == RC_MOST_CHANGES || first < LEAST_SHARE * border ||
+      first > (1 - LEAST_SHARE) * border)
+    *count = 0;
+  return rc_poll(context);
+}
+
+static float turn(const rc_change *a, const rc_change *b) {
+  float length = fmaxf(rc_apart(a, b), 1e-6f);
+  float ux = (b->x - a->x) / length, uy = (b->y - a->y) / length;
+  return 2.f + a->ux * ux + a->uy * uy - b->ux * ux - b->uy * uy;
+}
+
+static float side_of_chord(const rc_change *a, const rc_change *b, const rc_change *p) {
+  return (b->x - a->x) * (p->y - a->y) - (b->y - a->y) * (p->x - a->x);
+}
+
+static bool cross(const rc_change *a, const rc_change *b, const rc_change *p, const rc_change *q) {
+  return side_of_chord(a, b, p) * side_of_chord(a, b, q) < 0 &&
+         side_of_chord(p, q, a) * side_of_chord(p, q, b) < 0;
+}
+
+/* Where the edge would leave the picture if it went straight on through the hole. False: it would
+ * reach something known. */
+static bool leaves_the_picture(const finder *f, const rc_change *c, rc_change *end) {
+  const rc_around *a = f->around;
+  bool in_hole = false;
+  *end = *c;
+  for (int step = 0; c->ux != 0 || c->uy != 0; step++) {
+    end->x -= .5f * c->ux, end->y -= .5f * c->uy;
+    int x = (int)floorf(end->x + .5f), y = (int)floorf(end->y + .5f);
+    if (!rc_inside(a->image->width, a->image->height, a->box.x0 + x, a->box.y0 + y)) return in_hole;
+    if (!rc_inside(a->width, a->height, x, y)) return false;
+    if (a->from_hole[y * a->width + x] == 0)
+      in_hole = true;
+    else if (in_hole || step > 4 * BORDER_PX)
+      return false;
+  }
+  return false;
+}
+
+static rc_change in_plane(const finder *f, const rc_change *c) {
+  float x = c->x + (float)f->around->box.x0 - f->chart->x0;
+  float y = c->y + (float)f->around->box.y0 - f->chart->y0;
+  float w = fmaxf(1.f + f->chart->lx * x + f->chart->ly * y, 1e-3f);
+  return (rc_change){x / w, y / w, 0, 0};
+}
+
+/* Two edges that run the same way, farther and farther from each other: those of a stain. */
+static bool opens(const finder *f, const rc_change *a, const rc_change *b, const rc_change *p,
+                  const rc_change *q) {
+  rc_change from[2] = {in_plane(f, a), in_plane(f, p)}, to[2] = {in_plane(f, b), in_plane(f, q)};
+  return a->ux * p->ux + a->uy * p->uy > 0 &&
+         rc_apart(&to[0], &to[1]) > MOST_OPENING * rc_apart(&from[0], &from[1]);
+}
+
+/* Adds a chord. False: it crosses another, or leaves the picture and opens from one. */
+static bool add_chord(const finder *f, rc_chords *to, const rc_change *a, const rc_change *b,
+                      bool leaves, float turned) {
+  rc_change *next = to->end[to->count];
+  for (int i = 0; i < to->count; i++)
+    if (cross(a, b, &to->end[i][0], &to->end[i][1]) ||
+        (leaves && opens(f, a, b, &to->end[i][0], &to->end[i][1])))
+      return false;
+  next[0] = *a, next[1] = *b;
+  to->count++, to->turn += turned;
+  return true;
+}
+
+/* Tries all ways to pair up the changes that are not taken, or to lead them out of the picture. */
+static void pair_up(const finder *f, const rc_change *c, int count, unsigned taken,
+                    const rc_chords *sofar, rc_chords *best) {
+  int i = 0;
+  rc_change out;
+  while (i < count && taken >> i & 1) i++;
+  if (i == count) {
+    if (sofar->turn < best->turn) *best = *sofar;
+    return;
+  }
+  rc_chords with = *sofar;
+  if (leaves_the_picture(f, &c[i], &out) && add_chord(f, &with, &c[i], &out, true, TURN_OF_LEAVING))
+    pair_up(f, c, count, taken | 1u << i, &with, best);
+  for (int k = i + 1; k < count; k++) {
+    with = *sofar;
+    if (taken >> k & 1 || turn(&c[i], &c[k]) > MOST_TURN ||
+        !add_chord(f, &with, &c[i], &c[k], false, turn(&c[i], &c[k])))
+      continue;
+    pair_up(f, c, count, taken | 1u << i | 1u << k, &with, best);
+  }
+}
+
+recede_status rc_chords_find(rc_context *context, const rc_around *around, const rc_chart *chart,
+                             const int8_t *label, rc_chords *chords) {
+  finder f = {around, chart, label};
+  rc_change changes[RC_MOST_CHANGES];
+  rc_chords none = {.count = 0}, best = {.turn = INFINITY};
+  *chords = none;
+  RC_TRY(find_changes(context, &f, chords));
+  int count = chords->change_count;
+  memcpy(changes, chords->changes, sizeof changes);
+  drop_spurs(changes, &count);
+  if (!count || count > RC_MOST_CHORDS) return RECEDE_OK;
+  for (int i = 0; i < count; i++) follow(&f, &changes[i]);
+  pair_up(&f, changes, count, 0, &none, &best);
+  memcpy(chords->end, best.end, sizeof best.end);
+  chords->count = best.count, chords->turn = best.turn;
+  return RECEDE_OK;
+}

@@ -1,0 +1,180 @@
+#include "synthesis/structure/follow.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "kernels/kernels.h"
+
+/* A line's own profile is found within so many px of where a straight fit over a longer run puts
+ * it: lines are a little bent, and so are lenses. */
+#define FAR_PX 32
+#define PINNED_WITHIN_PX 2.f
+#define PINNED_STEP_PX .25f
+/* And one that no other vouches for must go on: in each of so many windows of so many px, one
+ * behind the other, its profile must correlate with its own. Crests and hedges look like lines for
+ * one window: .1 to .7 in the third, cracks and boards .84 and more. */
+#define GOES_ON_WINDOWS 3
+#define GOES_ON_PX 24
+#define LEAST_GOING_ON .75f
+#define LEAST_OF_CONTRAST .02f /* of its square: less is another thing's slope */
+/* From piece to piece it may bend by so much. */
+#define MOST_BEND_PX 1.f
+/* The part of its contrast that must be left, in the mean over the pieces. Dotted cracks keep .8,
+ * what has faded or was followed astray .1 to .4. */
+#define LEAST_KEPT .6f
+/* Another tone, as in the shadow of a rail, costs this per square of the line's own deviation. */
+#define PRICE_OF_TONE .5f
+#define LEAST_OF_PIECE -.5f
+/* Sources may be this much larger or smaller than what they fill. */
+#define WIDEST_RATIO 1.7f
+
+/* Profiles are read across the line's direction from a to b, in the same sense on both sides. */
+typedef struct frame {
+  rc_ruler ruler;
+  const rc_chart *chart;
+  rc_crossing *line;
+  float length;
+} frame;
+
+static void set_frame(frame *f) {
+  float dx = f->line->bx - f->line->ax, dy = f->line->by - f->line->ay;
+  f->length = sqrtf(dx * dx + dy * dy);
+  f->ruler.ux = dx / f->length, f->ruler.uy = dy / f->length;
+}
+
+static bool source_at(const void *user, int x, int y, float *value) {
+  const rc_seen *picture = user;
+  if (!rc_inside(picture->flags->width, picture->flags->height, x, y)) return false;
+  size_t at = (size_t)y * (size_t)picture->flags->width + (size_t)x;
+  *value = picture->value[at];
+  return (picture->flags->data[at] & RC_SOURCE) != 0;
+}
+
+/* Moves an end across the line until its nearest px look like its run does in the mean; outwards is
+ * -1 at a and 1 at b. own: the profile there. */
+static bool pin(const frame *f, float outwards, float *x, float *y, rc_profile *own) {
+  rc_profile far, near;
+  float most = -1e30f, moved = 0;
+  float from = outwards * RC_PROFILE_FROM_PX;
+  if (!rc_profile_mean(&f->ruler, *x, *y, from, outwards, FAR_PX, &far)) return false;
+  for (float across = -PINNED_WITHIN_PX; across <= PINNED_WITHIN_PX; across += PINNED_STEP_PX) {
+    if (!rc_profile_mean(&f->ruler, *x - f->ruler.uy * across, *y + f->ruler.ux * across, from,
+                         outwards, RC_PROFILE_NEAR_PX, &near))
+      continue;
+    float likeness = 2 * rc_profile_dot(&near, &far) - rc_profile_dot(&near, &near);
+    if (likeness > most) most = likeness, moved = across;
+  }
+  *x -= f->ruler.uy * moved, *y += f->ruler.ux * moved;
+  return rc_profile_mean(&f->ruler, *x, *y, from, outwards, RC_PROFILE_NEAR_PX, own);
+}
+
+/* Where the picture or the source ends, so may the line. */
+static bool goes_on(const frame *f, float outwards, float x, float y, const rc_profile *own) {
+  float square = rc_profile_dot(own, own);
+  for (int k = 0; k < GOES_ON_WINDOWS; k++) {
+    float most = -1, from = RC_PROFILE_FROM_PX + GOES_ON_PX * (float)k;
+    bool known = false;
+    for (float across = -PINNED_WITHIN_PX; across <= PINNED_WITHIN_PX; across += .5f) {
+      rc_profile here;
+      if (!rc_profile_mean(&f->ruler, x - f->ruler.uy * across, y + f->ruler.ux * across,
+                           outwards * from, outwards, GOES_ON_PX, &here))
+        continue;
+      float contrast = rc_profile_dot(&here, &here);
+      known = true;
+      if (contrast > LEAST_OF_CONTRAST * square)
+        most = fmaxf(most, rc_profile_dot(&here, own) / sqrtf(square * contrast));
+    }
+    if (known && most < LEAST_GOING_ON) return false;
+  }
+  return true;
+}
+
+/* Where the straight line's point t (0 = a, 1 = b) comes from when the line is moved along itself
+ * until its point split lies just outside the hole, beyond a for what lies before it. */
+static bool straight_source(const frame *f, float split, float t, float *x, float *y) {
+  const rc_crossing *c = f->line;
+  rc_chart flat = rc_chart_flat(*f->chart);
+  float margin = (RC_PROFILE_FROM_PX + RC_PATCH_RADIUS) / f->length;
+  float to = t < split ? -margin : 1 + margin, dx = c->bx - c->ax, dy = c->by - c->ay;
+  float ax = c->ax - flat.x0, ay = c->ay - flat.y0;
+  rc_copy copy =
+      rc_copy_between(&flat, ax + split * dx, ay + split * dy, ax + to * dx, ay + to * dy);
+  rc_place place = rc_copy_place(&flat, copy, ax + t * dx, ay + t * dy);
+  *x = place.x + flat.x0, *y = place.y + flat.y0;
+  return !place.beyond && place.ratio < WIDEST_RATIO && place.ratio > 1 / WIDEST_RATIO;
+}
+
+/* Finds one piece's source near the straight one, the bend of the piece before taken over. kept:
+ * the part of own's contrast that it has, less what its tone is off. False: there is none. */
+static bool follow_piece(const frame *f, float split, int piece, const rc_profile *own, float *bend,
+                         float *kept) {
+  rc_profile here;
+  float x, y, square = fmaxf(rc_profile_dot(own, own), 1e-12f), before = *bend,
+              half = f->length / (2 * RC_LINE_PIECES);
+  int count = half < 2 ? 4 : (int)(2 * half);
+  if (!straight_source(f, split, ((float)piece + .5f) / RC_LINE_PIECES, &x, &y)) return false;
+  *kept = LEAST_OF_PIECE;
+  for (float step = -MOST_BEND_PX; step <= MOST_BEND_PX; step += PINNED_STEP_PX) {
+    float across = before + step, px = x - f->ruler.uy * across, py = y + f->ruler.ux * across;
+    if (!rc_profile_mean(&f->ruler, px, py, .5f - half, 1, count, &here)) continue;
+    float off = here.tone - own->tone;
+    float part =
+        rc_profile_dot(&here, own) / square - PRICE_OF_TONE * RC_PROFILE * off * off / square;
+    if (part <= *kept) continue;
+    *kept = part, *bend = across;
+    f->line->from_x[piece] = px, f->line->from_y[piece] = py;
+  }
+  return *kept > LEAST_OF_PIECE;
+}
+
+/* The pieces from first on, away from the split, each from where a move of the whole group puts it,
+ * followed from the hole outwards. Where the picture ends the next piece begins a group of its own,
+ * beside the hole again. Adds what is kept to sum. */
+static bool follow_side(const frame *f, int first, int end, int step, const rc_profile *own,
+                        float *sum) {
+  float bend = 0, kept;
+  for (int piece = first, group = first; piece != end; piece += step) {
+    float split = (float)(step < 0 ? group + 1 : group) / RC_LINE_PIECES;
+    if (!follow_piece(f, split, piece, own, &bend, &kept)) {
+      group = piece, bend = 0, split = (float)(step < 0 ? group + 1 : group) / RC_LINE_PIECES;
+      if (!follow_piece(f, split, piece, own, &bend, &kept)) return false;
+    }
+    *sum += fmaxf(fminf(kept, 1), 0);
+  }
+  return true;
+}
+
+/* Pieces before split come from beyond a, the others from beyond b. The part of the contrast that
+ * is kept. */
+static float follow_both(const frame *f, float split, const rc_profile *own_a,
+                         const rc_profile *own_b) {
+  int middle = (int)(split * RC_LINE_PIECES);
+  float sum = 0;
+  if (!follow_side(f, middle - 1, -1, -1, own_a, &sum) ||
+      !follow_side(f, middle, RC_LINE_PIECES, 1, own_b, &sum))
+    return 0;
+  return sum / RC_LINE_PIECES;
+}
+
+bool rc_follow(const rc_seen *picture, const rc_chart *chart, bool alone, rc_crossing *line) {
+  static const float splits[] = {1, 0, .5f, .25f, .75f};
+  rc_profile own_a, own_b;
+  float most = LEAST_KEPT;
+  rc_crossing best;
+  bool found = false;
+  frame f = {.ruler = {.value = source_at, .picture = picture}, .chart = chart, .line = line};
+  set_frame(&f);
+  if (!pin(&f, -1, &line->ax, &line->ay, &own_a) || !pin(&f, 1, &line->bx, &line->by, &own_b))
+    return false;
+  set_frame(&f);
+  if (alone &&
+      (!goes_on(&f, -1, line->ax, line->ay, &own_a) || !goes_on(&f, 1, line->bx, line->by, &own_b)))
+    return false;
+  for (size_t i = 0; i < sizeof splits / sizeof *splits; i++) {
+    float kept = follow_both(&f, splits[i], &own_a, &own_b);
+    if (kept <= most) continue;
+    most = kept, best = *line, found = true;
+  }
+  if (found) *line = best;
+  return found;
+}
