@@ -15,6 +15,9 @@
  * and tells the plane's side. A hole in a ceiling hardly reaches that far down. */
 #define LEAST_FOOT .1
 
+/* Of 10 degrees: readings farther apart are of another plane. */
+#define ANOTHER_PLANE_COSINE .985
+
 static int longer(int width, int height) { return width > height ? width : height; }
 
 /* From the source's pixels, where there is a source. The plane gets the frame's size and a focal
@@ -42,8 +45,15 @@ static recede_status read_plane(rc_context *context, double fov_deg, const rc_vi
   return RECEDE_OK;
 }
 
-/* Where the source does not say, all of the picture is asked: a source may leave out the edges of a
- * pier, which tell where it leads. */
+static bool lie_apart(const recede_plane *a, const recede_plane *b) {
+  double dot = 0;
+  for (int k = 0; k < 3; k++) dot += a->normal[k] * b->normal[k];
+  return dot < ANOTHER_PLANE_COSINE;
+}
+
+/* Where there is a source all of the picture is asked, too, and the surer reading taken: a source
+ * may leave out the edges of a pier, which tell where it leads. A source in a wall is not lost
+ * among floors: what lies beside the hole contradicts them. */
 static recede_status estimate(rc_context *context, double fov_deg, const rc_views *views, int width,
                               int height, const double on[2], recede_orientation *orientation) {
   rc_views all = *views;
@@ -53,18 +63,19 @@ static recede_status estimate(rc_context *context, double fov_deg, const rc_view
   recede_status status = read_plane(context, fov_deg, views, width, height, on, orientation);
   rc_release(context, mark);
   bool read = status == RECEDE_OK;
-  if (!read && status != RECEDE_NO_PLANE) return status;
-  if (!views->source || (read && orientation->confidence >= RECEDE_CONFIDENCE_LOW)) return status;
+  if (!views->source || (!read && status != RECEDE_NO_PLANE)) return status;
   all.source = NULL;
   status = read_plane(context, fov_deg, &all, width, height, on, &of_all);
   rc_release(context, mark);
-  if (status == RECEDE_OK && of_all.confidence >= RECEDE_CONFIDENCE_LOW)
+  if (status == RECEDE_NO_PLANE) return read ? RECEDE_OK : status;
+  if (status != RECEDE_OK || (read && of_all.confidence <= orientation->confidence)) return status;
+  if (of_all.confidence >= RECEDE_CONFIDENCE_LOW &&
+      (!read || lie_apart(&orientation->plane, &of_all.plane)))
     rc_warn(context,
-            "The source does not tell how the plane lies: the orientation was read from all of the "
-            "picture. Give slant and tilt, or a horizon, if another plane is meant.");
-  if (status == RECEDE_OK && (!read || of_all.confidence >= RECEDE_CONFIDENCE_LOW))
-    *orientation = of_all;
-  return read && status == RECEDE_NO_PLANE ? RECEDE_OK : status;
+            "The source tells less of how the plane lies than the whole picture, from which the "
+            "orientation was read. Give slant and tilt, or a horizon, if another plane is meant.");
+  *orientation = of_all;
+  return RECEDE_OK;
 }
 
 static recede_status explain(rc_context *context, recede_status status, const char *what) {

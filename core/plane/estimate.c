@@ -65,11 +65,16 @@
  * share did no better where lines are right, and let false points win over good spectra. */
 #define MISSING_POINT_COST .3
 #define POINT_REACH .06
-/* Pictures show floors more often than ceilings: between readings, not within one, a ceiling must
- * explain this much more. From .25 to .4 all photos' skies stay up, and drawn ceilings are read. */
+/* Pictures show floors more often than ceilings, and floors that lie level: between readings, not
+ * within one, a ceiling must explain this much more, a level floor this much less. From .25 to .4
+ * all photos' skies stay up, and drawn ceilings are read; from .15 to .25 the same floors of photos
+ * are, of fewer at .1, and 150 drawn planes of all tilts as without. */
 #define CEILING_COST .3
-/* And are so much less believed without lines. */
-#define CEILING_DOUBT .3
+#define LEVEL_FAVOUR .2
+/* Without lines ceilings are so much less believed; what by chance is read wrongly is seldom level,
+ * so that level floors are more. */
+#define CEILING_DOUBT .6
+#define LEVEL_TRUST .45
 
 enum { FLAT, RAISED, MODELS };
 
@@ -120,23 +125,10 @@ static double cost_of(void *user, double across, double along) {
   return rc_homogeneity_cost(o->h, lean, o->scratch, NULL) * cost_of_missing_points(o->s, lean);
 }
 
-/* The i-th of the planes that hold direction v. */
-static rc_point fan_of(const double v[3], int i) {
-  double side = sqrt(v[0] * v[0] + v[1] * v[1]), angle = i * (M_PI / FAN), n[3];
-  double a[3] = {1, 0, 0}, b[3] = {0, 1, 0};
-  if (side > 1e-6) {
-    a[0] = -v[1] / side, a[1] = v[0] / side, a[2] = 0;
-    b[0] = -v[2] * v[0] / side, b[1] = -v[2] * v[1] / side, b[2] = side;
-  }
-  for (int k = 0; k < 3; k++) n[k] = cos(angle) * a[k] + sin(angle) * b[k];
-  for (int k = 0; k < 3 && n[2] < 0; k++) n[k] = -n[k];
-  rc_lean lean = rc_lean_of_normal(n);
-  return (rc_point){lean.across, lean.along, 0};
-}
-
 static rc_point coarse_point(const search *s, int i) {
-  if (i >= GRID) return fan_of(s->points[(i - GRID) / FAN].direction, (i - GRID) % FAN);
-  rc_lean lean = rc_coarse_lean(i);
+  const double *held = s->points[i < GRID ? 0 : (i - GRID) / FAN].direction;
+  rc_lean lean =
+      i < GRID ? rc_coarse_lean(i) : rc_lean_holding(held, (i - GRID) % FAN * (M_PI / FAN));
   return (rc_point){lean.across, lean.along, 0};
 }
 
@@ -184,30 +176,6 @@ static void ask_part(void *user, int item, int thread) {
       rc_simplex(cost_of, &o, s->best.x, s->best.y, FIRST_SIZE, TOLERANCE, CLOSER_STEPS);
 }
 
-static float median(float *values, int count) {
-  for (int i = 1; i < count; i++)
-    for (int j = i; j > 0 && values[j] < values[j - 1]; j--) {
-      float held = values[j];
-      values[j] = values[j - 1];
-      values[j - 1] = held;
-    }
-  return values[count / 2];
-}
-
-/* Twice the median misfit of the frontal plane: real planes halve it where they hold. */
-static recede_status take_saturation(rc_context *context, search *s) {
-  rc_homogeneity *h = &s->model[FLAT];
-  int known = 0;
-  float *misfit;
-  RC_TRY(RC_NEW(context, h->spectra->count, &misfit));
-  h->saturation = 1e9f;
-  rc_homogeneity_cost(h, (rc_lean){0, 0}, s->scratch, misfit);
-  for (int i = 0; i < h->spectra->count; i++)
-    if (isfinite(misfit[i])) misfit[known++] = misfit[i];
-  h->saturation = known ? fmaxf(2 * median(misfit, known), 1e-3f) : 1;
-  return RECEDE_OK;
-}
-
 static void weigh_cells(rc_homogeneity *h, const double on[2], float *weight) {
   const rc_spectra *spectra = h->spectra;
   double reach = REACH * (h->width > h->height ? h->width : h->height);
@@ -245,22 +213,42 @@ static recede_status set_up(rc_context *context, search *s, const rc_spectra *sp
   weigh_cells(h, on, s->weight);
   s->scratch_size = (rc_homogeneity_scratch(h) / sizeof(float) + count + 15) / 16 * 16;
   RC_TRY(RC_NEW(context, s->scratch_size * (size_t)context->threads, &s->scratch));
-  RC_TRY(take_saturation(context, s));
+  RC_TRY(rc_homogeneity_saturate(context, h, s->scratch));
   s->model[RAISED] = *h;
   s->model[RAISED].raised = true;
   return RECEDE_OK;
 }
 
-/* The reading of least cost, with a little favour for raised textures and against ceilings, and
- * more against raised textures of straight lines. */
-static void choose(search *s) {
+static double cost_of_ceiling(const rc_point *p) {
+  return 1 + CEILING_COST * rc_lean_ceiling(lean_of(p));
+}
+
+static double cost_among_readings(const rc_point *p) {
+  return p->cost * (cost_of_ceiling(p) - LEVEL_FAVOUR * rc_lean_level(lean_of(p)));
+}
+
+/* The last of those to look at closer is the one that a level floor is most likely near. */
+static void take_starts(rc_point coarse[COARSE]) {
+  int likely = STARTS - 1;
+  rc_points_to_front(coarse, COARSE, STARTS - 1);
+  for (int i = STARTS; i < COARSE; i++)
+    if (cost_among_readings(&coarse[i]) < cost_among_readings(&coarse[likely])) likely = i;
+  rc_point last = coarse[STARTS - 1];
+  coarse[STARTS - 1] = coarse[likely];
+  coarse[likely] = last;
+}
+
+/* The reading of least cost of those that explain more than the frontal plane does, with a little
+ * favour for raised textures and more against raised textures of straight lines. */
+static void choose(search *s, double frontal) {
   double least = INFINITY, lines = fmax(s->points[0].support, s->points[1].support);
+  s->best = (rc_point){0, 0, frontal};
   for (int m = 0; m < MODELS; m++)
     for (int i = 0; i < STARTS; i++) {
       const rc_point *p = &s->closer[m][i];
-      double cost = p->cost * (1 + CEILING_COST * rc_lean_ceiling(lean_of(p)));
+      double cost = cost_among_readings(p);
       if (m == RAISED) cost *= lines > 0 ? 1 + RAISED_LINES_COST * lines : 1 / RAISED_FAVOUR;
-      if (cost >= least) continue;
+      if (cost >= least || p->cost > (1 - LEAST_GAIN) * frontal) continue;
       least = cost;
       s->best_model = m;
       s->best = *p;
@@ -284,10 +272,9 @@ static recede_status find_points(rc_context *context, search *s, const rc_image 
 static recede_status find_best(rc_context *context, search *s) {
   RC_TRY(rc_parallel(context, MODELS * COARSE, look, s));
   double frontal = s->coarse[FLAT][0].cost;
-  for (int m = 0; m < MODELS; m++) rc_points_to_front(s->coarse[m], COARSE, STARTS);
+  for (int m = 0; m < MODELS; m++) take_starts(s->coarse[m]);
   RC_TRY(rc_parallel(context, MODELS * STARTS, look_closer, s));
-  choose(s);
-  if (s->best.cost > (1 - LEAST_GAIN) * frontal) s->best = (rc_point){0, 0, frontal};
+  choose(s, frontal);
   return RECEDE_OK;
 }
 
@@ -315,7 +302,8 @@ static double ambiguity_deg(const search *s) {
   for (int m = 0; m < MODELS; m++)
     for (int i = 0; i < STARTS; i++) {
       const rc_point *other = &s->closer[m][i];
-      if (other->cost >= ALMOST * s->best.cost ||
+      double unlikelier = fmax(1, cost_of_ceiling(other) / cost_of_ceiling(&s->best));
+      if (unlikelier * other->cost >= ALMOST * s->best.cost ||
           told - told_by_two_points(s, other) > TOLD_SO_MUCH_BETTER)
         continue;
       farthest = fmax(farthest, rc_lean_degrees(lean_of(&s->best), lean_of(other)));
@@ -360,9 +348,10 @@ static double judge(const search *s) {
       fmin(1, fmax(0, (share_on_plane(s) - NO_PLANE_SHARE) / (PLANE_SHARE - NO_PLANE_SHARE)));
   double doubt = CEILING_DOUBT * rc_lean_ceiling(lean_of(&s->best));
   double texture = share * falling(left, LARGE_MISFIT * LARGE_MISFIT) * (1 - doubt);
-  return (1 - (1 - texture) * (1 - told_by_lines(s))) *
-         falling(disagreement_deg(s), LARGE_DISAGREEMENT_DEG) *
-         falling(ambiguity_deg(s), LARGE_AMBIGUITY_DEG);
+  double told = (1 - (1 - texture) * (1 - told_by_lines(s))) *
+                falling(disagreement_deg(s), LARGE_DISAGREEMENT_DEG) *
+                falling(ambiguity_deg(s), LARGE_AMBIGUITY_DEG);
+  return 1 - (1 - told) * (1 - LEVEL_TRUST * rc_lean_level(lean_of(&s->best)));
 }
 
 recede_status rc_estimate_plane(rc_context *context, const rc_image *image, const rc_mask *flags,

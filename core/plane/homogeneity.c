@@ -9,6 +9,7 @@
 
 #include <math.h>
 
+#include "base/memory.h"
 #include "plane/approximate.h"
 
 /* The plane's spectrum is compared at half the density of the measured ones. */
@@ -212,4 +213,26 @@ double rc_homogeneity_cost(const rc_homogeneity *h, rc_lean lean, float *scratch
   }
   for (int i = 0; misfit && i < count; i++) misfit[i] = w.misfit[i];
   return total_cost(h, &w);
+}
+
+static float median(float *values, int count) {
+  for (int i = 1; i < count; i++)
+    for (int j = i; j > 0 && values[j] < values[j - 1]; j--) {
+      float held = values[j];
+      values[j] = values[j - 1];
+      values[j - 1] = held;
+    }
+  return values[count / 2];
+}
+
+recede_status rc_homogeneity_saturate(rc_context *context, rc_homogeneity *h, float *scratch) {
+  int known = 0;
+  float *misfit;
+  RC_TRY(RC_NEW(context, h->spectra->count, &misfit));
+  h->saturation = 1e9f;
+  rc_homogeneity_cost(h, (rc_lean){0, 0}, scratch, misfit);
+  for (int i = 0; i < h->spectra->count; i++)
+    if (isfinite(misfit[i])) misfit[known++] = misfit[i];
+  h->saturation = known ? fmaxf(2 * median(misfit, known), 1e-3f) : 1;
+  return RECEDE_OK;
 }

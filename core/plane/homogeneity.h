@@ -22,5 +22,8 @@ size_t rc_homogeneity_scratch(const rc_homogeneity *h);
  * misfit (may be NULL): that of every cell, NaN where the plane leaves too little to compare,
  * infinite beyond the horizon. */
 double rc_homogeneity_cost(const rc_homogeneity *h, rc_lean lean, float *scratch, float *misfit);
+/* Sets the saturation: twice the median misfit of the frontal plane. Real planes halve it where
+ * they hold. */
+recede_status rc_homogeneity_saturate(rc_context *context, rc_homogeneity *h, float *scratch);
 
 #endif

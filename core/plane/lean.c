@@ -3,6 +3,9 @@
 #include <math.h>
 
 #define TILTS 12
+/* Sine of the angle by which level floors may lean to a side: cameras are seldom held straighter.
+ */
+#define LEVEL_SINE .12
 
 void rc_lean_normal(rc_lean lean, double normal[3]) {
   double slant = sqrt(lean.across * lean.across + lean.along * lean.along);
@@ -29,6 +32,24 @@ double rc_lean_ceiling(rc_lean lean) {
   double n[3];
   rc_lean_normal(lean, n);
   return fmax(0, -n[1]);
+}
+
+double rc_lean_level(rc_lean lean) {
+  double n[3];
+  rc_lean_normal(lean, n);
+  return fmax(0, n[1]) * exp(-(n[0] / LEVEL_SINE) * (n[0] / LEVEL_SINE));
+}
+
+rc_lean rc_lean_holding(const double v[3], double angle) {
+  double side = sqrt(v[0] * v[0] + v[1] * v[1]), n[3];
+  double a[3] = {1, 0, 0}, b[3] = {0, 1, 0};
+  if (side > 1e-6) {
+    a[0] = -v[1] / side, a[1] = v[0] / side, a[2] = 0;
+    b[0] = -v[2] * v[0] / side, b[1] = -v[2] * v[1] / side, b[2] = side;
+  }
+  for (int k = 0; k < 3; k++) n[k] = cos(angle) * a[k] + sin(angle) * b[k];
+  for (int k = 0; k < 3 && n[2] < 0; k++) n[k] = -n[k];
+  return rc_lean_of_normal(n);
 }
 
 rc_lean rc_coarse_lean(int i) {
