@@ -67,10 +67,11 @@
 #define POINT_REACH .06
 /* Pictures show floors more often than ceilings, and floors that lie level: between readings, not
  * within one, a ceiling must explain this much more, a level floor this much less. From .25 to .4
- * all photos' skies stay up, and drawn ceilings are read; from .15 to .25 the same floors of photos
- * are, of fewer at .1, and 150 drawn planes of all tilts as without. */
+ * all photos' skies stay up, and drawn ceilings are read; from .15 to .25 nearly the same floors
+ * of photos are, fewer at .1, and 150 drawn planes of all tilts as without; at .2 one of dots is
+ * not. */
 #define CEILING_COST .3
-#define LEVEL_FAVOUR .2
+#define LEVEL_FAVOUR .15
 /* Without lines ceilings are so much less believed; what by chance is read wrongly is seldom level,
  * so that level floors are more. */
 #define CEILING_DOUBT .6
@@ -82,6 +83,7 @@ enum { FLAT, RAISED, MODELS };
 #define PARTS 6
 
 typedef struct search {
+  bool placed; /* a point is meant, and what lies beside it will be asked, too */
   rc_homogeneity model[MODELS];
   rc_vanishing points[RC_VANISHING_POINTS]; /* support: 0..1, how far it counts */
   float *weight;
@@ -205,6 +207,7 @@ static recede_status set_up(rc_context *context, search *s, const rc_spectra *sp
                             const recede_plane *frontal, const double on[2], bool chosen) {
   rc_homogeneity *h = &s->model[FLAT];
   size_t count = (size_t)spectra->count;
+  s->placed = on;
   h->spectra = spectra;
   h->chosen = chosen;
   h->width = frontal->width, h->height = frontal->height;
@@ -296,13 +299,15 @@ static double told_by_two_points(const search *s, const rc_point *reading) {
   return told;
 }
 
-/* The farthest other reading that explains the picture almost as well, and lines no worse. */
+/* The farthest other reading that explains the picture almost as well, and lines no worse. Where
+ * there is a hole, a ceiling, or a sky, elsewhere does not matter. */
 static double ambiguity_deg(const search *s) {
   double farthest = 0, told = told_by_two_points(s, &s->best);
   for (int m = 0; m < MODELS; m++)
     for (int i = 0; i < STARTS; i++) {
       const rc_point *other = &s->closer[m][i];
-      double unlikelier = fmax(1, cost_of_ceiling(other) / cost_of_ceiling(&s->best));
+      double unlikelier =
+          s->placed ? fmax(1, cost_of_ceiling(other) / cost_of_ceiling(&s->best)) : 1;
       if (unlikelier * other->cost >= ALMOST * s->best.cost ||
           told - told_by_two_points(s, other) > TOLD_SO_MUCH_BETTER)
         continue;

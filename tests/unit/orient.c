@@ -135,7 +135,6 @@ static void a_wall_is_not_read_as_the_floor(void) {
   g_free(on_wall);
 }
 
-/* It does not say that the sky lies on the plane, too. */
 /* Blades beside the hole look like no flat texture of this plane, and are none. */
 static void a_meadow_is_no_wall(void) {
   for (int slant = 60; slant <= 70; slant += 10) {
@@ -150,6 +149,7 @@ static void a_meadow_is_no_wall(void) {
   }
 }
 
+/* It does not say that the sky lies on the plane, too. */
 static void a_source_of_everything_is_none(void) {
   question *none = new_question(), *everything = new_question();
   draw(DOTS, 94, 0, .5 * SIDE, .9 * SIDE, none->gray);
