@@ -74,7 +74,7 @@
 #define LEVEL_FAVOUR .15
 /* Without lines ceilings are so much less believed; what by chance is read wrongly is seldom level,
  * so that level floors are more. */
-#define CEILING_DOUBT .6
+#define CEILING_DOUBT .5
 #define LEVEL_TRUST .45
 
 enum { FLAT, RAISED, MODELS };
