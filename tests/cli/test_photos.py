@@ -24,6 +24,20 @@ def test_orient_reads_photos(folder):
         check(found["confidence"] > .5, name, found)
 
 
+def test_orient_takes_level_floors_for_likelier(folder):
+    """Small holes on a road, of which lines, cars and verges tell other planes as well."""
+    picture = IMAGES / "motorway.jpg"
+    height, width = read(picture).shape[:2]
+    for across, down in ((.8, .6), (.4, .88), (.6, .6)):
+        mask = np.zeros((height, width), np.uint8)
+        middle = int(width * across), int(height * down)
+        cv2.ellipse(mask, middle, (width // 12, height // 14), 0, 0, 360, 255, -1)
+        write(folder / "mask.png", mask)
+        found = report_of("orient", picture, "--mask", folder / "mask.png")["orientation"]
+        check(abs(found["slant_deg"] - 92) < 3 and abs(found["tilt_deg"]) < 6, across, down, found)
+    check(found["confidence"] > .6, found)
+
+
 def test_orient_looks_beside_the_source(folder):
     """Planks alone do not tell where a pier leads; its edges do, which are no source."""
     picture, source = IMAGES / "pier.jpg", folder / "planks.png"
