@@ -19,6 +19,8 @@
  * of its doubt. A pier's planks alone were trusted by .54 to .89 and wrong, all of it by .99 and
  * right. */
 #define MUCH_SURER .1
+/* And so sure a source is not doubted: asking again takes as long. */
+#define SURE .9
 
 /* Of 10 degrees: readings farther apart are of another plane. */
 #define ANOTHER_PLANE_COSINE .985
@@ -73,7 +75,8 @@ static recede_status estimate(rc_context *context, double fov_deg, const rc_view
   recede_status status = read_plane(context, fov_deg, views, width, height, on, orientation);
   rc_release(context, mark);
   bool read = status == RECEDE_OK;
-  if (!views->source || (!read && status != RECEDE_NO_PLANE)) return status;
+  if (!read && status != RECEDE_NO_PLANE) return status;
+  if (!views->source || (read && orientation->confidence >= SURE)) return status;
   all.source = NULL;
   status = read_plane(context, fov_deg, &all, width, height, on, &of_all);
   rc_release(context, mark);
