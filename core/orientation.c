@@ -27,10 +27,10 @@
 
 static int longer(int width, int height) { return width > height ? width : height; }
 
-/* From the source's pixels, where there is a source. The plane gets the frame's size and a focal
- * length by the frame's field of view. */
+/* From the source's pixels, where there is a source; whether it was chosen. The plane gets the
+ * frame's size and a focal length by the frame's field of view. */
 static recede_status read_plane(rc_context *context, double fov_deg, const rc_views *views,
-                                int width, int height, const double on[2],
+                                int width, int height, const double on[2], bool *chosen,
                                 recede_orientation *orientation) {
   const recede_view *picture = views->image;
   int longest = longer(picture->width, picture->height);
@@ -43,6 +43,7 @@ static recede_status read_plane(rc_context *context, double fov_deg, const rc_vi
   double fov_of_picture = 2 * atan(.5 * longest / frame.focal_px) * (180 / 3.14159265358979323846);
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_shrink(context, views, factor, &image, &flags));
+  *chosen = rc_sources_are_chosen(&flags);
   RC_TRY(rc_estimate_plane(context, &image, &flags, fmax(fov_of_picture, 1),
                            views->mask ? small_on : NULL, plane, &orientation->confidence));
   rc_release(context, mark);
@@ -58,30 +59,35 @@ static bool lie_apart(const recede_plane *a, const recede_plane *b) {
   return dot < ANOTHER_PLANE_COSINE;
 }
 
-static bool all_tells_more(const recede_orientation *source, const recede_orientation *all) {
-  if (source->confidence < RECEDE_CONFIDENCE_LOW) return all->confidence > source->confidence;
-  return 1 - all->confidence < MUCH_SURER * (1 - source->confidence);
+static bool all_tells_more(const recede_orientation *source, const recede_orientation *all,
+                           bool beside_a_hole) {
+  if (all->confidence < RECEDE_CONFIDENCE_LOW) return false;
+  if (source->confidence < RECEDE_CONFIDENCE_LOW) return true;
+  return beside_a_hole && 1 - all->confidence < MUCH_SURER * (1 - source->confidence);
 }
 
-/* Where there is a source all of the picture is asked, too: a source may leave out the edges of a
- * pier, which tell where it leads. A source in a wall is not lost among floors: what lies beside
- * the hole contradicts them. */
+/* Where there is a chosen source all of the picture is asked, too: a source may leave out the edges
+ * of a pier, which tell where it leads. Where there is a hole, a wall as source is not lost among
+ * floors: what lies beside the hole contradicts them. */
 static recede_status estimate(rc_context *context, double fov_deg, const rc_views *views, int width,
                               int height, const double on[2], recede_orientation *orientation) {
   rc_views all = *views;
   recede_orientation of_all = *orientation;
+  bool chosen;
   RC_TRY(rc_stage(context, "orientation", 0, .03));
   rc_block *mark = rc_mark(context);
-  recede_status status = read_plane(context, fov_deg, views, width, height, on, orientation);
+  recede_status status =
+      read_plane(context, fov_deg, views, width, height, on, &chosen, orientation);
   rc_release(context, mark);
   bool read = status == RECEDE_OK;
   if (!read && status != RECEDE_NO_PLANE) return status;
-  if (!views->source || (read && orientation->confidence >= SURE)) return status;
+  if (!views->source || (read && (!chosen || orientation->confidence >= SURE))) return status;
   all.source = NULL;
-  status = read_plane(context, fov_deg, &all, width, height, on, &of_all);
+  status = read_plane(context, fov_deg, &all, width, height, on, &chosen, &of_all);
   rc_release(context, mark);
   if (status == RECEDE_NO_PLANE) return read ? RECEDE_OK : status;
-  if (status != RECEDE_OK || (read && !all_tells_more(orientation, &of_all))) return status;
+  if (status != RECEDE_OK || (read && !all_tells_more(orientation, &of_all, views->mask)))
+    return status;
   if (of_all.confidence >= RECEDE_CONFIDENCE_LOW &&
       (!read || lie_apart(&orientation->plane, &of_all.plane)))
     rc_warn(context,

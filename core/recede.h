@@ -286,8 +286,8 @@ RECEDE_API recede_status recede_job_set_source(recede_job *job, const recede_vie
 RECEDE_API recede_status recede_job_set_params(recede_job *job, const recede_params *params);
 /* The orientation that the job's parameters ask for: converted, or estimated from the picture
  * (RECEDE_ORIENTATION_AUTO; only pixels outside the mask are looked at, and first only those inside
- * the source, which is taken to lie on the plane, all of it, if it has less than 70 % of them;
- * where it says nothing with confidence the others are asked, too). */
+ * the source, which is taken to lie on the plane, all of it, if it has less than 70 % of them; then
+ * the others are asked, too, unless it is sure, and believed where they are far surer). */
 RECEDE_API recede_status recede_job_orient(recede_job *job, recede_orientation *orientation);
 /* Memory in bytes and time in seconds that fill (or synthesize, to a width and height) would take
  * at the most; touches no pixel. */

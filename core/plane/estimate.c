@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "plane/belief.h"
 #include "plane/homogeneity.h"
 #include "plane/nearby.h"
 #include "plane/simplex.h"
@@ -33,11 +34,9 @@
 /* Sources that are less than this part of all that is known were chosen. */
 #define MOST_CHOSEN .7
 
-/* Each of these halves the confidence, the first unless lines tell the plane; measured on drawn
- * cases, where errors above 8 degrees began at a misfit of .95 and a disagreement of 3, and on
- * photos of several planes (misfit 2, disagreement 7 and more, a quarter of the cells on the
- * plane). */
-#define LARGE_MISFIT 1.15
+/* Each of these two halves the confidence, as a large misfit does unless lines tell the plane;
+ * measured on drawn cases, where errors above 8 degrees began at a disagreement of 3, and on photos
+ * of several planes (7 and more, a quarter of the cells on the plane). */
 #define LARGE_DISAGREEMENT_DEG 7
 #define LARGE_AMBIGUITY_DEG 40
 #define ALMOST 1.03
@@ -65,17 +64,17 @@
  * share did no better where lines are right, and let false points win over good spectra. */
 #define MISSING_POINT_COST .3
 #define POINT_REACH .06
-/* Pictures show floors more often than ceilings, and floors that lie level: between readings, not
- * within one, a ceiling must explain this much more, a level floor this much less. From .25 to .4
- * all photos' skies stay up, and drawn ceilings are read; from .15 to .25 nearly the same floors
- * of photos are, fewer at .1, and 150 drawn planes of all tilts as without; at .2 one of dots is
- * not. */
-#define CEILING_COST .3
+/* Floors in pictures mostly lie level: between readings a level one must explain so much less. From
+ * .15 to .25 nearly the same floors of photos are read, fewer at .1, and 150 drawn planes of all
+ * tilts as without; at .2 one of dots is not. */
 #define LEVEL_FAVOUR .15
-/* Without lines ceilings are so much less believed; what by chance is read wrongly is seldom level,
- * so that level floors are more. */
+/* Without lines level ceilings are so much less believed: right above the view's height never. At
+ * .4 a meadow that is blurred behind a penguin is one. */
 #define CEILING_DOUBT .5
+/* What by chance is read wrongly is seldom level: so much of the doubt goes, if anything at all
+ * tells the plane. Of photos held upright; of those upside down half are then trusted floors. */
 #define LEVEL_TRUST .45
+#define LEAST_TOLD .05
 
 enum { FLAT, RAISED, MODELS };
 
@@ -83,7 +82,7 @@ enum { FLAT, RAISED, MODELS };
 #define PARTS 6
 
 typedef struct search {
-  bool placed; /* a point is meant, and what lies beside it will be asked, too */
+  bool placed; /* a point is meant, and what lies beside it is asked, too */
   rc_homogeneity model[MODELS];
   rc_vanishing points[RC_VANISHING_POINTS]; /* support: 0..1, how far it counts */
   float *weight;
@@ -128,9 +127,10 @@ static double cost_of(void *user, double across, double along) {
 }
 
 static rc_point coarse_point(const search *s, int i) {
-  const double *held = s->points[i < GRID ? 0 : (i - GRID) / FAN].direction;
-  rc_lean lean =
-      i < GRID ? rc_coarse_lean(i) : rc_lean_holding(held, (i - GRID) % FAN * (M_PI / FAN));
+  int fan = i - GRID;
+  rc_lean lean = fan < 0
+                     ? rc_coarse_lean(i)
+                     : rc_lean_holding(s->points[fan / FAN].direction, fan % FAN * (M_PI / FAN));
   return (rc_point){lean.across, lean.along, 0};
 }
 
@@ -194,7 +194,7 @@ static void weigh_cells(rc_homogeneity *h, const double on[2], float *weight) {
 }
 
 /* A source mask may leave out no more than a dirty corner. */
-static bool are_chosen(const rc_mask *flags) {
+bool rc_sources_are_chosen(const rc_mask *flags) {
   size_t sources = 0, known = 0;
   for (size_t i = 0; i < (size_t)flags->width * (size_t)flags->height; i++) {
     sources += flags->data[i] & RC_SOURCE ? 1 : 0;
@@ -207,7 +207,7 @@ static recede_status set_up(rc_context *context, search *s, const rc_spectra *sp
                             const recede_plane *frontal, const double on[2], bool chosen) {
   rc_homogeneity *h = &s->model[FLAT];
   size_t count = (size_t)spectra->count;
-  s->placed = on;
+  s->placed = on && !chosen;
   h->spectra = spectra;
   h->chosen = chosen;
   h->width = frontal->width, h->height = frontal->height;
@@ -222,15 +222,12 @@ static recede_status set_up(rc_context *context, search *s, const rc_spectra *sp
   return RECEDE_OK;
 }
 
-static double cost_of_ceiling(const rc_point *p) {
-  return 1 + CEILING_COST * rc_lean_ceiling(lean_of(p));
-}
-
 static double cost_among_readings(const rc_point *p) {
-  return p->cost * (cost_of_ceiling(p) - LEVEL_FAVOUR * rc_lean_level(lean_of(p)));
+  rc_lean lean = lean_of(p);
+  return p->cost * (rc_cost_of_ceiling(lean) - LEVEL_FAVOUR * rc_lean_level(lean));
 }
 
-/* The last of those to look at closer is the one that a level floor is most likely near. */
+/* Those to look at closer; the last is the likeliest of the others, which may be a level floor. */
 static void take_starts(rc_point coarse[COARSE]) {
   int likely = STARTS - 1;
   rc_points_to_front(coarse, COARSE, STARTS - 1);
@@ -300,15 +297,14 @@ static double told_by_two_points(const search *s, const rc_point *reading) {
 }
 
 /* The farthest other reading that explains the picture almost as well, and lines no worse. Where
- * there is a hole, a ceiling, or a sky, elsewhere does not matter. */
+ * what lies beside the hole is asked, a ceiling, or a sky, elsewhere does not matter. */
 static double ambiguity_deg(const search *s) {
   double farthest = 0, told = told_by_two_points(s, &s->best);
   for (int m = 0; m < MODELS; m++)
     for (int i = 0; i < STARTS; i++) {
       const rc_point *other = &s->closer[m][i];
-      double unlikelier =
-          s->placed ? fmax(1, cost_of_ceiling(other) / cost_of_ceiling(&s->best)) : 1;
-      if (unlikelier * other->cost >= ALMOST * s->best.cost ||
+      double more = rc_cost_of_ceiling(lean_of(other)) / rc_cost_of_ceiling(lean_of(&s->best));
+      if ((s->placed ? fmax(1, more) : 1) * other->cost >= ALMOST * s->best.cost ||
           told - told_by_two_points(s, other) > TOLD_SO_MUCH_BETTER)
         continue;
       farthest = fmax(farthest, rc_lean_degrees(lean_of(&s->best), lean_of(other)));
@@ -330,10 +326,6 @@ static double share_on_plane(const search *s) {
   return on / all;
 }
 
-static double falling(double value, double half) {
-  return 1 / (1 + (value / half) * (value / half));
-}
-
 /* How far lines alone tell the plane. */
 static double told_by_lines(const search *s) {
   const rc_vanishing *first = &s->points[0];
@@ -346,17 +338,18 @@ static double told_by_lines(const search *s) {
 
 /* What is left unexplained must be small (a log2 power of 1 is a factor of two) and most cells must
  * lie on the plane, or lines must tell it; parts of the picture must say the same, and nothing else
- * may explain it as well. */
+ * may explain it as well. A level floor needs less of all that. */
 static double judge(const search *s) {
   double left = s->best.cost * s->best.cost;
   double share =
       fmin(1, fmax(0, (share_on_plane(s) - NO_PLANE_SHARE) / (PLANE_SHARE - NO_PLANE_SHARE)));
   double doubt = CEILING_DOUBT * rc_lean_ceiling(lean_of(&s->best));
-  double texture = share * falling(left, LARGE_MISFIT * LARGE_MISFIT) * (1 - doubt);
+  double texture = share * rc_falling(left, RC_LARGE_MISFIT * RC_LARGE_MISFIT) * (1 - doubt);
   double told = (1 - (1 - texture) * (1 - told_by_lines(s))) *
-                falling(disagreement_deg(s), LARGE_DISAGREEMENT_DEG) *
-                falling(ambiguity_deg(s), LARGE_AMBIGUITY_DEG);
-  return 1 - (1 - told) * (1 - LEVEL_TRUST * rc_lean_level(lean_of(&s->best)));
+                rc_falling(disagreement_deg(s), LARGE_DISAGREEMENT_DEG) *
+                rc_falling(ambiguity_deg(s), LARGE_AMBIGUITY_DEG);
+  double trust = LEVEL_TRUST * rc_lean_level(lean_of(&s->best)) * fmin(1, told / LEAST_TOLD);
+  return 1 - (1 - told) * (1 - trust);
 }
 
 recede_status rc_estimate_plane(rc_context *context, const rc_image *image, const rc_mask *flags,
@@ -372,7 +365,7 @@ recede_status rc_estimate_plane(rc_context *context, const rc_image *image, cons
                    "The picture has too little texture to read the plane's orientation from. Give "
                    "slant and tilt, or a horizon.");
   RC_TRY(RC_NEW_ZERO(context, 1, &s));
-  RC_TRY(set_up(context, s, &spectra, plane, on, are_chosen(flags)));
+  RC_TRY(set_up(context, s, &spectra, plane, on, rc_sources_are_chosen(flags)));
   RC_TRY(find_points(context, s, image, flags, on));
   RC_TRY(find_best(context, s));
   RC_TRY(rc_parallel(context, PARTS, ask_part, s));

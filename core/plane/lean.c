@@ -3,8 +3,7 @@
 #include <math.h>
 
 #define TILTS 12
-/* Sine of the angle by which level floors may lean to a side: cameras are seldom held straighter.
- */
+/* Sine of the angle by which level floors may lean to a side: hands are not quite steady. */
 #define LEVEL_SINE .12
 
 void rc_lean_normal(rc_lean lean, double normal[3]) {

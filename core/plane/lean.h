@@ -15,11 +15,11 @@ double rc_lean_degrees(rc_lean a, rc_lean b);
 /* 1: a level ceiling; 0: a wall or a floor. */
 double rc_lean_ceiling(rc_lean lean);
 
-/* 1: a floor with a level horizon; 0: a wall, a ceiling, a plane seen from right above it, or one
- * that leans to a side by 15 degrees and more. */
+/* Of floors with a level horizon the sine of the slant; 0: a wall, a ceiling, a frontal plane, or a
+ * floor that leans to a side by 15 degrees and more. */
 double rc_lean_level(rc_lean lean);
-/* A plane that holds direction v, turned about it by this angle from the one that holds the right
- * angle to v in the picture, too. */
+/* A plane that holds the unit vector v, turned about it by this angle from the one that holds the
+ * view axis, too. */
 rc_lean rc_lean_holding(const double v[3], double angle);
 
 /* Orientations to begin with, all of them; the first is frontal. */

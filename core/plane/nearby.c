@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "plane/belief.h"
 #include "plane/simplex.h"
 
 /* A cell weighs e^(-d^2 / 2) at a distance of d reaches. The reach is the least, from NEAREST to
@@ -25,8 +26,6 @@
 #define CLOSER_STEPS 60
 #define FIRST_SIZE .06
 #define TOLERANCE .002
-/* As between readings of the whole picture. */
-#define CEILING_COST .3
 
 /* How many times what the plane read nearby costs the picture's plane costs there: from the first
  * on it is doubted, and given up where the other is surer; from the second on it is in any case.
@@ -37,9 +36,6 @@
 #define GIVEN_UP 1.28
 /* Nearer planes are the same, less exactly read: boards alone are up to 18 degrees off. */
 #define ANOTHER_PLANE_DEG 25
-/* Costs from which on nothing is known of the cells nearby: trusted walls stay below it, and lanes
- * of a motorway, of which no plane makes one texture, begin at 1.8. */
-#define LARGE_MISFIT 1.15
 #define LEAST_COST 1e-3
 /* Another reading that costs no more than this tells against both; halves the confidence. */
 #define ALMOST 1.06
@@ -80,7 +76,7 @@ static void look_closer(void *user, int item, int thread) {
   objective o = objective_of(n, thread);
   rc_point *to = &n->closer[item];
   *to = rc_simplex(cost_of, &o, from->x, from->y, FIRST_SIZE, TOLERANCE, CLOSER_STEPS);
-  to->cost *= 1 + CEILING_COST * rc_lean_ceiling((rc_lean){to->x, to->y});
+  to->cost *= rc_cost_of_ceiling((rc_lean){to->x, to->y});
 }
 
 /* Returns how many equal cells would tell as much. */
@@ -136,10 +132,6 @@ static double ambiguity_deg(const nearby *n) {
   return farthest;
 }
 
-static double falling(double value, double half) {
-  return 1 / (1 + (value / half) * (value / half));
-}
-
 /* Between the planes, whichever side is seen. */
 static double apart_deg(rc_lean a, rc_lean b) {
   double degrees = rc_lean_degrees(a, b);
@@ -152,11 +144,13 @@ static void correct(const nearby *n, bool picture_raised, rc_lean *lean, double 
   rc_homogeneity own = n->h;
   own.raised = picture_raised;
   objective o = {&own, n->scratch};
-  if (best->cost > LARGE_MISFIT || apart_deg(*lean, found) < ANOTHER_PLANE_DEG) return;
+  /* Else nothing is known of the cells nearby: trusted walls stay below it, and lanes of a
+   * motorway, of which no plane makes one texture, begin at 1.8. */
+  if (best->cost > RC_LARGE_MISFIT || apart_deg(*lean, found) < ANOTHER_PLANE_DEG) return;
   double times = cost_of(&o, lean->across, lean->along) / fmax(best->cost, LEAST_COST);
   if (times < DOUBTED) return;
-  double surely = falling(best->cost * best->cost, LARGE_MISFIT * LARGE_MISFIT) *
-                  falling(ambiguity_deg(n), LARGE_AMBIGUITY_DEG);
+  double surely = rc_falling(best->cost * best->cost, RC_LARGE_MISFIT * RC_LARGE_MISFIT) *
+                  rc_falling(ambiguity_deg(n), LARGE_AMBIGUITY_DEG);
   *confidence *= fmax(0, (GIVEN_UP - times) / (GIVEN_UP - DOUBTED));
   if (surely <= *confidence) return;
   *confidence = surely;

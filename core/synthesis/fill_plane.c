@@ -14,7 +14,6 @@
 #include "synthesis/search/cuts.h"
 #include "synthesis/search/descent.h"
 #include "synthesis/search/effort.h"
-#include "synthesis/search/iterate.h"
 #include "synthesis/search/traits.h"
 #include "synthesis/sources/alike.h"
 #include "synthesis/sources/near.h"

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "synthesis/search/effort.h"
+#include "synthesis/search/search.h"
 #include "synthesis/search/usage.h"
 #include "synthesis/search/vote.h"
 

@@ -3,7 +3,6 @@
 #define RECEDE_SYNTHESIS_SEARCH_ITERATE_H
 
 #include "synthesis/search/descent.h"
-#include "synthesis/search/search.h"
 
 /* Scratch of a level. */
 typedef struct rc_workspace {
