@@ -333,6 +333,6 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int ch
   uint64_t composition = box * (12 * c + 4) + pads;
   uint64_t detail = (grown < pixels ? grown : pixels) * (12 * c + 1) + pixels;
   uint64_t last = search > composition ? search : composition;
-  uint64_t conditions = pixels / 3 + (64 << 10);
+  uint64_t conditions = pixels * 11 / 10 + (64 << 10);
   return pyramid + levels + conditions + (last > detail ? last : detail) + ((uint64_t)4 << 20);
 }

@@ -32,8 +32,8 @@ static picture floor_with(const drawn *lines, int count) {
 }
 
 /* In how many of the hole's columns the line is bright where it should run. */
-static double part_continued(const drawn *line, int seed, const char *settings) {
-  task t = task_new(floor_with(line, 1), settings);
+static double part_continued_in(picture p, const drawn *line, int seed, const char *settings) {
+  task t = task_new(p, settings);
   t.params.slant_deg = 30;
   t.params.seed = seed;
   task_hole(&t, hole);
@@ -43,6 +43,10 @@ static double part_continued(const drawn *line, int seed, const char *settings) 
     bright += picture_get(&t.result, x, (int)lrint(height_of(line, x)), 0) > .65f;
   task_clear(&t);
   return (double)bright / (hole.x1 - hole.x0);
+}
+
+static double part_continued(const drawn *line, int seed, const char *settings) {
+  return part_continued_in(floor_with(line, 1), line, seed, settings);
 }
 
 static double mean_continued(const char *settings) {
@@ -64,6 +68,19 @@ static void lines_go_on(void) {
          without = mean_continued("quality=draft engine-lines=0");
   g_assert_cmpfloat(with, >, without + .1);
   g_assert_cmpfloat(with, >, .9);
+}
+
+/* The line at row 120, and beside it the dashes of a lane, which come again along it. */
+static void dashes_do_not_stop_it(void) {
+  static const drawn line = {120, 0, 0};
+  double sum = 0;
+  for (int seed = 0; seed < 4; seed++) {
+    picture p = floor_with(&line, 1);
+    for (int x = 10; x < WIDTH; x += 100) picture_fill(&p, (area){x, 50, x + 30, 56}, .95f);
+    sum += part_continued_in(p, &line, seed, "quality=draft") / 4;
+  }
+  g_test_message("%.2f", sum);
+  g_assert_cmpfloat(sum, >, .9);
 }
 
 /* Two ends that only happen to face each other are not joined. */
@@ -324,6 +341,7 @@ static void same_for_threads(void) {
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/lines/go-on", lines_go_on);
+  g_test_add_func("/lines/dashes", dashes_do_not_stop_it);
   g_test_add_func("/lines/others", others_do_not);
   g_test_add_func("/lines/markings", markings_keep_both_edges);
   g_test_add_func("/lines/boards", boards_run);

@@ -1,6 +1,7 @@
 #include "synthesis/sources/conditions.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -79,36 +80,41 @@ static recede_status set_light(rc_context *context, table *t, bool *differs) {
   return RECEDE_OK;
 }
 
-/* A cell is kin of all that any of its pixels is; what is neither source nor target says nothing.
- */
-static rc_kin kin_of_cell(const rc_mask *coarsest, const rc_kin *kin, int shift, int column,
-                          int row) {
-  rc_kin of_all = 0;
-  bool any = false;
-  for (int y = row << shift; y < (row + 1) << shift && y < coarsest->height; y++)
-    for (int x = column << shift; x < (column + 1) << shift && x < coarsest->width; x++) {
-      if (!(*rc_flag(coarsest, x, y) & (RC_SOURCE | RC_TARGET))) continue;
-      of_all |= kin[(size_t)y * (size_t)coarsest->width + (size_t)x];
-      any = true;
-    }
-  return any ? of_all : RC_ALL_KIN;
+/* Of all that any of a cell's pixels has the most; and all where there is nothing to copy. */
+static void add_likeness(rc_likeness *to, const rc_likeness *one) {
+  for (int k = 0; k < RC_KIN_PARTS; k++)
+    if (one->part[k] > to->part[k]) to->part[k] = one->part[k];
+}
+
+static void add_nearness(rc_nearness *to, const rc_nearness *one) {
+  if (to->unit == 0) memcpy(to->across, one->across, sizeof to->across);
+  for (int k = 0; k < RC_KIN_PARTS; k++)
+    if (one->part[k] > to->part[k]) to->part[k] = one->part[k];
+  to->unit = fmaxf(to->unit, one->unit);
 }
 
 static recede_status set_kin(rc_context *context, table *t, const rc_image *images,
-                             const rc_mask *flags, int levels, bool *wanted) {
+                             const rc_mask *flags, int levels, bool *told) {
   const rc_mask *coarsest = &flags[levels - 1];
   int shift = t->exponent - (levels - 1);
-  rc_kin *kin = NULL;
-  bool told = false;
-  if (*wanted && rc_is_looked_at(coarsest)) {
-    RC_TRY(RC_NEW(context, (size_t)coarsest->width * (size_t)coarsest->height, &kin));
-    RC_TRY(rc_kin_find(context, &images[levels - 1], coarsest, kin, &told));
-  }
-  for (int row = 0; row < t->cells.height; row++)
-    for (int column = 0; column < t->cells.width; column++)
-      t->conditions[row * t->cells.width + column].kin =
-          told ? kin_of_cell(coarsest, kin, shift, column, row) : RC_ALL_KIN;
-  *wanted = told;
+  size_t pixels = (size_t)coarsest->width * (size_t)coarsest->height;
+  rc_likeness *likeness;
+  rc_nearness *nearness;
+  *told = false;
+  if (!rc_is_looked_at(coarsest)) return RECEDE_OK;
+  RC_TRY(RC_NEW(context, pixels, &likeness));
+  RC_TRY(RC_NEW(context, pixels, &nearness));
+  RC_TRY(rc_kin_find(context, images, flags, levels, likeness, nearness, told));
+  if (!*told) return RECEDE_OK;
+  for (int y = 0; y < coarsest->height; y++)
+    for (int x = 0; x < coarsest->width; x++) {
+      size_t at = (size_t)y * (size_t)coarsest->width + (size_t)x;
+      rc_condition *to = &t->conditions[(y >> shift) * t->cells.width + (x >> shift)];
+      if (coarsest->data[at] & RC_SOURCE) add_likeness(&to->likeness, &likeness[at]);
+      if (coarsest->data[at] & RC_TARGET) add_nearness(&to->nearness, &nearness[at]);
+    }
+  for (int i = 0; i < t->cells.width * t->cells.height; i++)
+    if (!(t->cells.data[i] & RC_SOURCE)) memset(&t->conditions[i].likeness, 255, RC_KIN_PARTS);
   return RECEDE_OK;
 }
 
@@ -134,7 +140,7 @@ recede_status rc_conditions_find(rc_context *context, const rc_image *images, co
     RC_TRY(rc_focus_measure(context, images, flags, levels, &t.cells, exponent, blur, &focus));
   for (size_t i = 0; focus && i < count; i++) t.conditions[i].blur = blur[i];
   if (light) RC_TRY(set_light(context, &t, &light));
-  RC_TRY(set_kin(context, &t, images, flags, levels, &kin));
+  if (kin) RC_TRY(set_kin(context, &t, images, flags, levels, &kin));
   rc_release(context, mark);
   if (focus || kin || light)
     *conditions = (rc_conditions){t.conditions, width, exponent};
@@ -146,7 +152,7 @@ recede_status rc_conditions_find(rc_context *context, const rc_image *images, co
 float rc_conditions_price(const rc_condition *source, const rc_condition *target) {
   float blur = fabsf(source->blur - target->blur) - MOST_BLUR_OFF, square = 0, price = 0;
   if (blur > 0.f) price = PRICE_OF_BLUR * blur * blur;
-  if (!(source->kin & target->kin)) price += PRICE_OF_NO_KIN;
+  price += PRICE_OF_NO_KIN * (1 - rc_kinship(&source->likeness, &target->nearness));
   for (int k = 0; k < 3; k++) {
     float off = source->light[k] - target->light[k];
     square += off * off;

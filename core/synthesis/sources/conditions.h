@@ -8,9 +8,10 @@
 #include "synthesis/sources/kin.h"
 
 typedef struct rc_condition {
-  float blur;     /* octaves; 0: sharp */
-  float light[3]; /* the tone, in deviations of the texture */
-  rc_kin kin;
+  float blur;           /* octaves; 0: sharp */
+  float light[3];       /* the tone, in deviations of the texture */
+  rc_likeness likeness; /* of what is source there */
+  rc_nearness nearness; /* where it is target */
 } rc_condition;
 
 /* A table of cells, NULL where they are all the same. */
@@ -32,7 +33,7 @@ static inline const rc_condition *rc_condition_at(const rc_conditions *condition
 
 /* images and flags: the pyramid's levels, finest first, without the tone; deviation: the texture's,
  * of a channel. focus, kin, light: whether they are to count. The table's memory is the context's,
- * a third of a byte for each pixel of the finest level at the most. */
+ * 1.1 bytes for each pixel of the finest level at the most. */
 recede_status rc_conditions_find(rc_context *context, const rc_image *images, const rc_mask *flags,
                                  int levels, const rc_tone *tone, float deviation, bool focus,
                                  bool kin, bool light, rc_conditions *conditions);

@@ -2,54 +2,63 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/real.h"
 #include "image/distance.h"
+#include "synthesis/sources/materials.h"
 #include "synthesis/sources/places.h"
 
 /* What is beside the hole, so near to it as RC_TOUCHING_PX, is every n-th pixel of that; of fewer
  * than the least nothing is told. */
 #define LEAST_SAMPLES 32
 #define MOST_SAMPLES 256
-#define PARTS 32
-/* The square that is looked at: a hen's head is 3 px at the coarsest level. */
-#define HALF_PX 1
-/* Near a target pixel is what lies as far away as the border of the hole, and this. */
-#define MARGIN_PX 9
-/* Looks are alike up to so many times what samples differ by from the most similar other at most so
- * far away, that shares no pixel with them, 90 of 100; or up to this part of the sources'
- * deviation. Pebbles of many colours differ by .4 of it, grass by .1. */
+/* The square that is looked at, to each side: a hen's tail is 5 px at the coarsest level. */
+#define HALF_PX 2
+/* Two are alike up to so many times what samples differ by from the most similar other, at most so
+ * far away, that shares no pixel with them, 90 of 100; that is, of what places differ by, at least
+ * 1. */
 #define TIMES_OWN 1.5f
 #define OWN_PERCENTILE 90
-#define OWN_PX 12
-#define LEAST_UNLIKE .4f
-/* There are several things where no more than this part of all pairs of a source and a target pixel
- * are kin: one texture has .75 to 1, hens, paths and walls .45 to .71. */
-#define MOST_KIN .72
+#define OWN_PX 15
+#define LEAST_OWN 1.f
+/* What a sample says of a target pixel falls with the square of its distance, and this. */
+#define NEAR_SQUARE_PX 4
+/* A source is foreign to what has less than the first of the usual, no more from the second on, for
+ * what lies beside the hole varies. What crosses it, a groove, is little of what is beside it: so
+ * what the parts on opposite sides both look like counts, too. */
+#define FOREIGN .1f
+#define ENOUGH .3f
+#define OF_CROSSING 1.f
+/* There are several things where so many of all pairs of a source and a target pixel are foreign.
+ * One texture has 0 to .13 (stones .01 to .09), bricks seen at a grazing angle .3; paths beside
+ * lawns, walls, water and animals .1 to .5. */
+#define LEAST_FOREIGN .1
 /* Of so many sources and target pixels each, at the most. */
-#define MOST_EACH 1024
+#define MOST_EACH 256
 
 typedef struct sample {
-  int x, y;
-  rc_looks looks;
-  rc_kin part;
+  int x, y, part;
+  rc_material material;
 } sample;
 
 typedef struct finder {
-  const rc_image *image;
   const rc_mask *flags;
-  uint8_t *from_hole, *depth; /* px; of the hole's pixels the other way round */
-  sample *samples;
-  int count;
-  float most; /* square of the distance up to which looks are alike */
-  rc_kin *kin;
+  const rc_material *materials;
+  uint8_t *from_hole; /* px */
+  sample *samples;    /* in the order of their parts */
+  int count, first[RC_KIN_PARTS + 1];
+  float middle[RC_KIN_PARTS][2];
+  float among[RC_KIN_PARTS][RC_KIN_PARTS]; /* how much of one part looks like the other */
+  float most;                              /* square of the distance up to which they are alike */
+  rc_likeness *likeness;
+  rc_nearness *nearness;
 } finder;
 
-static int64_t square_px(const sample *p, int x, int y) {
-  int64_t dx = p->x - x, dy = p->y - y;
-  return dx * dx + dy * dy;
+static int square_px(const sample *p, int x, int y) {
+  return (p->x - x) * (p->x - x) + (p->y - y) * (p->y - y);
 }
 
 static recede_status measure_distances(rc_context *context, finder *f) {
@@ -57,47 +66,59 @@ static recede_status measure_distances(rc_context *context, finder *f) {
   size_t pixels = (size_t)width * (size_t)height;
   uint8_t *outside;
   RC_TRY(RC_NEW(context, pixels, &f->from_hole));
-  RC_TRY(RC_NEW(context, pixels, &f->depth));
-  rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, pixels, &outside));
   for (size_t i = 0; i < pixels; i++) outside[i] = !(f->flags->data[i] & RC_TARGET);
   rc_distance_inside(outside, 1, width, height, false, f->from_hole);
-  rc_distance_inside(f->flags->data, RC_TARGET, width, height, false, f->depth);
-  rc_release(context, mark);
+  RC_FREE(context, &outside);
   return rc_poll(context);
 }
 
 static bool is_beside(const finder *f, size_t at) {
-  return f->flags->data[at] & RC_SOURCE && f->from_hole[at] && f->from_hole[at] <= RC_TOUCHING_PX;
+  return f->flags->data[at] & RC_SOURCE && f->from_hole[at] && f->from_hole[at] <= RC_TOUCHING_PX &&
+         !isnan(f->materials[at].value[0]);
 }
 
 static void take_samples(finder *f) {
-  int width = f->flags->width, found = 0;
-  size_t pixels = (size_t)width * (size_t)f->flags->height;
+  size_t width = (size_t)f->flags->width, pixels = width * (size_t)f->flags->height;
+  int found = 0, seen = 0;
   for (size_t i = 0; i < pixels; i++) found += is_beside(f, i);
   int step = found / MOST_SAMPLES + 1;
-  found = 0;
-  for (size_t i = 0; i < pixels; i++) {
-    if (!is_beside(f, i) || found++ % step) continue;
-    sample *s = &f->samples[f->count];
-    *s = (sample){.x = (int)(i % (size_t)width), .y = (int)(i / (size_t)width)};
-    f->count += rc_look(f->image, f->flags, s->x, s->y, HALF_PX, &s->looks);
-  }
+  for (size_t i = 0; i < pixels; i++)
+    if (is_beside(f, i) && seen++ % step == 0)
+      f->samples[f->count++] = (sample){(int)(i % width), (int)(i / width), 0, f->materials[i]};
 }
 
 /* Each part has a sample far from all others' for its middle, and what is nearest to that. */
-static void divide(const finder *f) {
-  int64_t nearest[MOST_SAMPLES];
-  int middle = 0;
-  for (int i = 0; i < f->count; i++) nearest[i] = INT64_MAX;
-  for (int part = 0; part < PARTS; part++) {
-    int next = 0;
+static void divide(finder *f) {
+  int nearest[MOST_SAMPLES], next = 0;
+  for (int i = 0; i < f->count; i++) nearest[i] = INT32_MAX;
+  for (int part = 0; part < RC_KIN_PARTS; part++) {
+    int middle = next;
     for (int i = 0; i < f->count; i++) {
-      int64_t here = square_px(&f->samples[middle], f->samples[i].x, f->samples[i].y);
-      if (here < nearest[i]) nearest[i] = here, f->samples[i].part = (rc_kin)1 << part;
+      int here = square_px(&f->samples[middle], f->samples[i].x, f->samples[i].y);
+      if (here < nearest[i]) nearest[i] = here, f->samples[i].part = part;
       if (nearest[i] > nearest[next]) next = i;
     }
-    middle = next;
+  }
+}
+
+static int by_part(const void *a, const void *b) {
+  const sample *p = a, *q = b;
+  int place = p->y != q->y ? p->y - q->y : p->x - q->x;
+  return p->part != q->part ? p->part - q->part : place;
+}
+
+static void order_by_part(finder *f) {
+  qsort(f->samples, (size_t)f->count, sizeof *f->samples, by_part);
+  for (int i = 0; i < f->count; i++) {
+    sample *s = &f->samples[i];
+    f->first[s->part + 1]++;
+    f->middle[s->part][0] += (float)s->x, f->middle[s->part][1] += (float)s->y;
+  }
+  for (int k = 0; k < RC_KIN_PARTS; k++) {
+    float count = fmaxf((float)f->first[k + 1], 1);
+    f->middle[k][0] /= count, f->middle[k][1] /= count;
+    f->first[k + 1] += f->first[k];
   }
 }
 
@@ -112,31 +133,63 @@ static float own_spread(const finder *f) {
       const sample *q = &f->samples[k];
       bool shares = abs(p->x - q->x) <= 2 * HALF_PX && abs(p->y - q->y) <= 2 * HALF_PX;
       if (!shares && square_px(p, q->x, q->y) <= OWN_PX * OWN_PX)
-        least = fminf(least, rc_looks_square(&p->looks, &q->looks));
+        least = fminf(least, rc_material_square(&p->material, &q->material));
     }
     if (isfinite(least)) nearest[count++] = least;
   }
   if (count < LEAST_SAMPLES) return INFINITY;
   qsort(nearest, (size_t)count, sizeof *nearest, rc_by_value);
-  return nearest[count * OWN_PERCENTILE / 100];
+  return fmaxf(nearest[count * OWN_PERCENTILE / 100], LEAST_OWN);
 }
 
-static rc_kin kin_of_source(const finder *f, int x, int y) {
-  rc_looks looks;
-  rc_kin kin = 0;
-  if (!rc_look(f->image, f->flags, x, y, HALF_PX, &looks)) return RC_ALL_KIN;
-  for (int i = 0; i < f->count; i++)
-    if (!(kin & f->samples[i].part) && rc_looks_square(&looks, &f->samples[i].looks) <= f->most)
-      kin |= f->samples[i].part;
-  return kin;
+/* What part of a part it looks like. */
+static float looks_like(const finder *f, const rc_material *material, int part) {
+  int alike = 0, count = f->first[part + 1] - f->first[part];
+  for (int i = f->first[part]; i < f->first[part + 1]; i++)
+    alike += rc_material_square(material, &f->samples[i].material) <= f->most;
+  return count ? (float)alike / (float)count : 0;
 }
 
-static rc_kin kin_of_target(const finder *f, int x, int y, int depth) {
-  rc_kin kin = 0;
-  int near = depth + MARGIN_PX;
+static void compare_parts(finder *f) {
+  for (int i = 0; i < f->count; i++) {
+    const sample *s = &f->samples[i];
+    float share = 1 / (float)(f->first[s->part + 1] - f->first[s->part]);
+    for (int k = 0; k < RC_KIN_PARTS; k++)
+      f->among[s->part][k] += share * looks_like(f, &s->material, k);
+  }
+}
+
+static rc_likeness likeness_of(const finder *f, const rc_material *material) {
+  rc_likeness to;
+  bool known = !isnan(material->value[0]);
+  for (int k = 0; k < RC_KIN_PARTS; k++)
+    to.part[k] = known ? (uint8_t)(255 * looks_like(f, material, k) + .5f) : 255;
+  return to;
+}
+
+static rc_nearness nearness_at(const finder *f, int x, int y) {
+  rc_nearness to;
+  float near[RC_KIN_PARTS] = {0}, most = 0, sum = 0, usual = 0;
   for (int i = 0; i < f->count; i++)
-    if (square_px(&f->samples[i], x, y) <= near * near) kin |= f->samples[i].part;
-  return kin ? kin : RC_ALL_KIN;
+    near[f->samples[i].part] += 1 / (float)(square_px(&f->samples[i], x, y) + NEAR_SQUARE_PX);
+  for (int k = 0; k < RC_KIN_PARTS; k++) most = fmaxf(most, near[k]);
+  for (int k = 0; k < RC_KIN_PARTS; k++) {
+    to.part[k] = (uint8_t)(255 * near[k] / most + .5f);
+    sum += to.part[k];
+  }
+  for (int k = 0; k < RC_KIN_PARTS; k++)
+    for (int i = 0; i < RC_KIN_PARTS; i++) usual += to.part[k] * f->among[k][i] * to.part[i];
+  to.unit = sum / (255 * usual);
+  for (int k = 0; k < RC_KIN_PARTS; k++) {
+    float least = INFINITY;
+    for (int i = 0; i < RC_KIN_PARTS; i++) {
+      float ix = f->middle[i][0] - (float)x, iy = f->middle[i][1] - (float)y;
+      float kx = f->middle[k][0] - (float)x, ky = f->middle[k][1] - (float)y;
+      float cosine = (ix * kx + iy * ky) / sqrtf(ix * ix + iy * iy + 1);
+      if (cosine < least) least = cosine, to.across[k] = (uint8_t)i;
+    }
+  }
+  return to;
 }
 
 static void find_row(void *user, int y, int thread) {
@@ -144,47 +197,74 @@ static void find_row(void *user, int y, int thread) {
   (void)thread;
   for (int x = 0; x < f->flags->width; x++) {
     size_t at = (size_t)y * (size_t)f->flags->width + (size_t)x;
-    uint8_t flags = f->flags->data[at];
-    f->kin[at] = flags & RC_TARGET   ? kin_of_target(f, x, y, f->depth[at])
-                 : flags & RC_SOURCE ? kin_of_source(f, x, y)
-                                     : RC_ALL_KIN;
+    if (f->flags->data[at] & RC_SOURCE) f->likeness[at] = likeness_of(f, &f->materials[at]);
+    if (f->flags->data[at] & RC_TARGET) f->nearness[at] = nearness_at(f, x, y);
   }
 }
 
-/* Of one grid of the pixels with a flag. */
-static int take_kin(const finder *f, uint8_t flag, rc_kin taken[MOST_EACH]) {
-  size_t pixels = (size_t)f->flags->width * (size_t)f->flags->height, all = 0, seen = 0;
+static float usual_share(const rc_likeness *source, const rc_nearness *target) {
+  int sum = 0;
+  for (int k = 0; k < RC_KIN_PARTS; k++) sum += source->part[k] * target->part[k];
+  return (float)sum * target->unit;
+}
+
+static float crossing_share(const rc_likeness *source, const rc_nearness *target) {
+  int most = 0;
+  for (int k = 0; k < RC_KIN_PARTS; k++) {
+    int here = source->part[k], across = source->part[target->across[k]];
+    int both = here < across ? here : across;
+    if (both > most) most = both;
+  }
+  return (float)most / 255;
+}
+
+/* Every n-th pixel with a flag. */
+static int take_some(const rc_mask *flags, uint8_t flag, size_t taken[MOST_EACH]) {
+  size_t pixels = (size_t)flags->width * (size_t)flags->height, all = 0, seen = 0;
   int count = 0;
-  for (size_t i = 0; i < pixels; i++) all += f->flags->data[i] & flag ? 1 : 0;
+  for (size_t i = 0; i < pixels; i++) all += flags->data[i] & flag ? 1 : 0;
   size_t step = all / MOST_EACH + 1;
   for (size_t i = 0; i < pixels; i++)
-    if (f->flags->data[i] & flag && seen++ % step == 0) taken[count++] = f->kin[i];
+    if (flags->data[i] & flag && seen++ % step == 0) taken[count++] = i;
   return count;
 }
 
 static bool are_several(const finder *f) {
-  rc_kin source[MOST_EACH], target[MOST_EACH];
-  int sources = take_kin(f, RC_SOURCE, source), targets = take_kin(f, RC_TARGET, target), kin = 0;
+  size_t source[MOST_EACH], target[MOST_EACH];
+  int sources = take_some(f->flags, RC_SOURCE, source), foreign = 0;
+  int targets = take_some(f->flags, RC_TARGET, target);
   for (int i = 0; i < sources; i++)
-    for (int k = 0; k < targets; k++) kin += (source[i] & target[k]) != 0;
-  return kin <= MOST_KIN * sources * targets;
+    for (int k = 0; k < targets; k++)
+      foreign += usual_share(&f->likeness[source[i]], &f->nearness[target[k]]) < FOREIGN;
+  return foreign >= LEAST_FOREIGN * sources * targets;
 }
 
-recede_status rc_kin_find(rc_context *context, const rc_image *image, const rc_mask *flags,
-                          rc_kin *kin, bool *told) {
-  finder f = {.image = image, .flags = flags, .kin = kin};
+recede_status rc_kin_find(rc_context *context, const rc_image *images, const rc_mask *flags,
+                          int levels, rc_likeness *likeness, rc_nearness *nearness, bool *told) {
+  finder f = {.flags = &flags[levels - 1], .likeness = likeness, .nearness = nearness};
+  rc_material *materials;
   rc_block *mark = rc_mark(context);
   *told = false;
+  RC_TRY(RC_NEW(context, (size_t)f.flags->width * (size_t)f.flags->height, &materials));
+  RC_TRY(rc_materials_find(context, images, flags, levels, HALF_PX, materials));
+  f.materials = materials;
   RC_TRY(measure_distances(context, &f));
   RC_TRY(RC_NEW(context, MOST_SAMPLES, &f.samples));
   take_samples(&f);
-  float own = TIMES_OWN * TIMES_OWN * own_spread(&f);
-  if (isfinite(own)) {
+  f.most = TIMES_OWN * TIMES_OWN * own_spread(&f);
+  if (isfinite(f.most)) {
     divide(&f);
-    f.most = fmaxf(own, LEAST_UNLIKE * LEAST_UNLIKE * (float)rc_source_variance(image, flags));
-    RC_TRY(rc_parallel(context, flags->height, find_row, &f));
+    order_by_part(&f);
+    compare_parts(&f);
+    RC_TRY(rc_parallel(context, f.flags->height, find_row, &f));
     *told = are_several(&f);
   }
   rc_release(context, mark);
-  return RECEDE_OK;
+  return rc_poll(context);
+}
+
+float rc_kinship(const rc_likeness *source, const rc_nearness *target) {
+  float share = target->unit > 0 ? usual_share(source, target) : ENOUGH;
+  if (share < ENOUGH) share += OF_CROSSING * crossing_share(source, target);
+  return fminf(share / ENOUGH, 1);
 }

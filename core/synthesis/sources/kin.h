@@ -7,16 +7,27 @@
 #include "base/context.h"
 #include "image/image.h"
 
-/* Parts of what is beside the hole, a bit for each: of a source those that it looks like, of a
- * target pixel those that lie near it. Where they have none in common the source is no kin of what
- * lies there. All: nothing is known. */
-typedef uint32_t rc_kin;
-#define RC_ALL_KIN UINT32_MAX
+/* What is beside the hole is divided into so many parts. */
+#define RC_KIN_PARTS 16
 
-/* image and flags: the coarsest level; kin: of each of its pixels. told: so many of the
- * sources are no kin of so much of the hole that there must be several things; else all of kin is
- * undefined. */
-recede_status rc_kin_find(rc_context *context, const rc_image *image, const rc_mask *flags,
-                          rc_kin *kin, bool *told);
+/* Of a source: how much of each part it looks like, of 255. */
+typedef struct rc_likeness {
+  uint8_t part[RC_KIN_PARTS];
+} rc_likeness;
+
+/* Of a target pixel: how much each part says of it, the nearest most; unit makes 1 of the sum over
+ * what usually lies beside the hole there. And which part lies across the pixel from each. */
+typedef struct rc_nearness {
+  uint8_t part[RC_KIN_PARTS], across[RC_KIN_PARTS];
+  float unit; /* 0: nothing is told */
+} rc_nearness;
+
+/* images and flags: the pyramid's levels, finest first; likeness and nearness: of the sources and
+ * of the target among the pixels of the coarsest. told: so many of the sources are foreign to so
+ * much of the hole that there must be several things; else both are undefined. */
+recede_status rc_kin_find(rc_context *context, const rc_image *images, const rc_mask *flags,
+                          int levels, rc_likeness *likeness, rc_nearness *nearness, bool *told);
+/* From 0, what looks like nothing beside the hole there, to 1, what looks like enough of it. */
+float rc_kinship(const rc_likeness *source, const rc_nearness *target);
 
 #endif

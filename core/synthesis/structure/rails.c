@@ -1,9 +1,11 @@
 #include "synthesis/structure/rails.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "base/memory.h"
 #include "base/random.h"
+#include "base/real.h"
 #include "synthesis/structure/profile.h"
 
 /* A texture runs if, moved along its lines by so many px of the coarsest level, it changes by less
@@ -11,11 +13,14 @@
 #define RUN_PX 2.f
 #define MOST_ALONG .3
 /* A texture repeats if, moved along by so many px of the coarsest level, it changes by less than
- * this part of what it does moved half as far: bricks and tiles .25 to .68, roofs .83 to .91,
- * cracks .76 to .96, though by chance .70 where there is little source, boards 1 and more. */
+ * this part of what it does moved half as far, and half as far again: bricks, tiles and steps .27
+ * to .60, roofs .74 to .91, cracks .72 to 1, boards .9 and more. So it must be also where no point
+ * counts more than most differ by: what stands out, as a dash on a road, differs by more than all
+ * the rest together. */
 #define LEAST_PERIOD_PX 6
 #define MOST_PERIOD_PX 64
 #define MOST_REPEATED .69
+#define STANDS_OUT .1 /* the brightest and the darkest of all points */
 /* The lines' own direction is good to .5 degrees; over a hole's length that is a joint's width. So
  * so many directions to each side are tried, in tangents, first at the coarsest level and then so
  * many levels finer. */
@@ -23,6 +28,9 @@
 #define COARSE_TURN .008f
 #define FINE_TURN .002f
 #define FINER_BY 2
+/* Where none of the two strongest lines lies along the rails, but for so much from end to end, it
+ * would break in the hole: boards have .1 to .8, tracks of wheels beside a bent crack 3.8. */
+#define MOST_STEP_PX 2.f
 /* Points that are looked at, of scales near the hole's, and how many of them must be seen. */
 #define POINTS 2000
 #define TRIES (8 * POINTS)
@@ -47,6 +55,7 @@ typedef struct view {
   const rc_image *image;
   const rc_mask *flags;
   rc_chart chart;
+  double most_change; /* squared: of any point no more counts */
   int count;
   int32_t points[POINTS];
 } view;
@@ -69,7 +78,7 @@ static rc_box near_hole(const rc_mask *flags) {
 /* Points within the box. beside: only where its distance is positive; NULL: all. */
 static void set_view(const rc_image *image, const rc_mask *flags, rc_chart chart, rc_box box,
                      const rc_boundary *beside, view *v) {
-  *v = (view){.image = image, .flags = flags, .chart = rc_chart_flat(chart)};
+  *v = (view){image, flags, rc_chart_flat(chart), INFINITY, 0, {0}};
   for (uint32_t n = 0; n < TRIES && v->count < POINTS; n++) {
     uint64_t bits = rc_random(rc_key(0, 97, 0), n, 0, 0);
     int x = box.x0 + (int)rc_below((uint32_t)bits, (uint32_t)(box.x1 - box.x0));
@@ -97,7 +106,7 @@ static void look(const view *v, float a, float b, change *c) {
     if (place.beyond || !(place.ratio < WIDEST_RATIO && place.ratio > 1 / WIDEST_RATIO) ||
         !rc_ruler_sample(&ruler, place.x + v->chart.x0, place.y + v->chart.y0, &there))
       continue;
-    c->squares += (there - here) * (there - here);
+    c->squares += fmin((there - here) * (there - here), v->most_change);
     c->seen++;
   }
 }
@@ -185,19 +194,42 @@ static bool runs(const view *v, rc_rails r) {
   return change_along(v, r, RUN_PX) < MOST_ALONG * change_across(v, r, RUN_PX);
 }
 
-static bool repeats(const view *v, rc_rails r) {
-  double changes[MOST_PERIOD_PX + 1];
-  for (int px = LEAST_PERIOD_PX / 2; px <= MOST_PERIOD_PX; px++) {
+static bool comes_again(const view *v, rc_rails r) {
+  enum { FARTHEST = MOST_PERIOD_PX + MOST_PERIOD_PX / 2 };
+  double changes[FARTHEST + 1];
+  for (int px = LEAST_PERIOD_PX / 2; px <= FARTHEST; px++) {
     float by = (float)px;
     change c = {0, 0};
     look(v, by * r.a, by * r.b, &c);
     look(v, -by * r.a, -by * r.b, &c);
     changes[px] = mean_of(&c);
-    if (px < LEAST_PERIOD_PX) continue;
-    double half_way = fmin(changes[px / 2], changes[(px + 1) / 2]);
-    if (half_way < INFINITY && changes[px] < MOST_REPEATED * half_way) return true;
+  }
+  for (int px = LEAST_PERIOD_PX; px <= MOST_PERIOD_PX; px++) {
+    int before = px / 2, after = px + px / 2, odd = px % 2;
+    double half_way = fmin(changes[before], changes[before + odd]);
+    double beyond = fmin(changes[after], changes[after + odd]);
+    if (half_way < INFINITY && changes[px] < MOST_REPEATED * fmin(half_way, beyond)) return true;
   }
   return false;
+}
+
+/* What most points differ by, squared. */
+static double usual_change(const view *v) {
+  float values[POINTS];
+  for (int i = 0; i < v->count; i++)
+    values[i] =
+        rc_brightness_at(v->image, v->points[i] % v->image->width, v->points[i] / v->image->width);
+  qsort(values, (size_t)v->count, sizeof *values, rc_by_value);
+  int end = (int)(STANDS_OUT * v->count);
+  double all = v->count ? values[v->count - 1 - end] - values[end] : 0;
+  return all * all;
+}
+
+static bool repeats(view *v, rc_rails r) {
+  v->most_change = INFINITY;
+  if (!comes_again(v, r)) return false;
+  v->most_change = usual_change(v);
+  return comes_again(v, r);
 }
 
 /* The direction that the texture changes least along. False: it does not run. */
@@ -243,6 +275,17 @@ static float how_far(const rc_crossing *lines, int count, const rc_mask *flags) 
   return most;
 }
 
+/* Whether one of the two strongest lines, if there are any, lies along the rails. */
+static bool keep_lines_straight(const rc_chart *chart, const rc_crossing *lines, int count,
+                                rc_rails rails) {
+  float least = count ? INFINITY : 0;
+  for (int i = 0; i < count && i < 2; i++) {
+    rc_copy d = rc_crossing_direction(chart, &lines[i]);
+    least = fminf(least, fabsf(d.a * rails.b - d.b * rails.a) * rc_crossing_length(&lines[i]));
+  }
+  return least <= MOST_STEP_PX;
+}
+
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                             int levels, const rc_chart *chart, const rc_crossing *lines, int *count,
                             rc_rails *rails) {
@@ -250,27 +293,29 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
   const rc_mask *flags = &masks[coarse];
   rc_chart here = rc_chart_coarser(*chart, coarse);
   view *v;
-  rc_rails r;
+  rc_rails along = {0};
   bool told = *count > 0;
   *rails = (rc_rails){0};
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, 1, &v));
   if (told) {
-    r = median_of(chart, lines, *count);
+    along = median_of(chart, lines, *count);
   } else {
     set_view(&images[coarse], flags, here, near_hole(flags), NULL, v);
-    told = scan(v, &r) && leaves_the_picture(&here, flags, r);
+    told = scan(v, &along) && leaves_the_picture(&here, flags, along);
   }
   if (told) set_view(&images[coarse], flags, here, all_of(flags), NULL, v);
-  if (told && runs(v, r)) {
+  if (told && runs(v, along)) {
     float reach_px = how_far(lines, *count, &masks[0]);
-    r = sharpened(v, r, reach_px / (float)(1 << coarse), COARSE_TURN);
+    rc_rails r = sharpened(v, along, reach_px / (float)(1 << coarse), COARSE_TURN);
     set_view(&images[fine], &masks[fine], rc_chart_coarser(*chart, fine), all_of(&masks[fine]),
              NULL, v);
-    *rails = sharpened(v, r, reach_px / (float)(1 << fine), FINE_TURN);
-  } else if (*count) {
+    r = sharpened(v, r, reach_px / (float)(1 << fine), FINE_TURN);
+    if (keep_lines_straight(chart, lines, *count, r)) *rails = r;
+  }
+  if (*count && !rc_runs(rails)) {
     set_view(&images[coarse], flags, here, near_hole(flags), NULL, v);
-    if (repeats(v, r)) *count = 0;
+    if (repeats(v, along)) *count = 0;
   }
   rc_release(context, mark);
   return rc_poll(context);
