@@ -91,6 +91,24 @@ def test_a_roof_keeps_its_rows(folder):
     check(means[1] > .78 and means[1] > means[0] + .04, kept)
 
 
+def test_a_bent_crack_goes_on(folder):
+    """The road runs along its lanes, but a crack across it bends, and is no edge of boards."""
+    image, middle = IMAGES / "motorway.jpg", (180, 476)
+    mask = cv2.ellipse(np.zeros((540, 960), np.uint8), middle, (79, 53), 0, 0, 360, 255, -1)
+    mask, out, kept = write(folder / "mask.png", mask), folder / "out.png", []
+    for seed in range(1 if harness.SANITIZED else 3):
+        recede("fill", image, "--mask", mask, "-o", out, "--horizon", "0,310,960,310", "-q",
+               "--seed", seed, "--force")
+        gray = cv2.cvtColor(read(out), cv2.COLOR_BGR2GRAY).astype(float)
+        lighter = []
+        for x in range(middle[0] - 76, middle[0] + 77):
+            y = round(476 + (x - 70) * 5 / 277)
+            lighter.append(gray[y - 1:y + 2, x].max() - np.median(gray[y - 8:y + 9, x]))
+        kept.append(np.mean(np.array(lighter) > 6))
+    print("#", kept)
+    check(np.mean(kept) > .7, kept)
+
+
 def test_light_is_not_negative(folder):
     """A roof in linear light, its hole's surroundings bright and black: what is joined gets no
     darker than black."""

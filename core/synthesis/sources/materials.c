@@ -88,8 +88,7 @@ static void describe_row(void *user, int y, int thread) {
     float sums[SUMS] = {0};
     for (int j = y0; j < y1; j++)
       for (int i = x0; i < x1; i++)
-        for (int k = 0; k < SUMS; k++)
-          sums[k] += f->sums[(size_t)j * (size_t)width + (size_t)i][k];
+        for (int k = 0; k < SUMS; k++) sums[k] += f->sums[(size_t)j * (size_t)width + (size_t)i][k];
     describe(sums, (x1 - x0) * (y1 - y0), &f->out[(size_t)y * (size_t)width + (size_t)x]);
   }
 }
