@@ -17,6 +17,7 @@
 #include "synthesis/search/traits.h"
 #include "synthesis/sources/alike.h"
 #include "synthesis/sources/near.h"
+#include "synthesis/sources/places.h"
 #include "synthesis/sources/spots.h"
 #include "synthesis/sources/strangers.h"
 #include "synthesis/structure/boundary.h"
@@ -334,5 +335,8 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int ch
   uint64_t detail = (grown < pixels ? grown : pixels) * (12 * c + 1) + pixels;
   uint64_t last = search > composition ? search : composition;
   uint64_t conditions = pixels * 11 / 10 + (64 << 10);
-  return pyramid + levels + conditions + (last > detail ? last : detail) + ((uint64_t)4 << 20);
+  uint64_t descent = levels + (last > detail ? last : detail);
+  /* Before it, of the coarsest level. */
+  uint64_t kin = RC_KIN_BYTES_PER_PX * (pixels < RC_MOST_LOOKED_AT ? pixels : RC_MOST_LOOKED_AT);
+  return pyramid + conditions + (descent > kin ? descent : kin) + ((uint64_t)4 << 20);
 }

@@ -163,9 +163,10 @@ static bool is_red(const picture *p, int x, int y) {
 /* They stand out no more than the stones beside the hole, but have colours of their own. */
 static void strangers_stay_where_they_are(void) {
   const area hole = {90, 60, 230, 180};
-  double with = part_of(people_on_gravel, hole, 0, "orientation=frontal", 0, is_red);
-  double without =
-      part_of(people_on_gravel, hole, 0, "orientation=frontal engine-spots=0", 0, is_red);
+  const char *settings = "orientation=frontal engine-kin=0";
+  const char *off = "orientation=frontal engine-kin=0 engine-spots=0";
+  double with = part_of(people_on_gravel, hole, 0, settings, 0, is_red);
+  double without = part_of(people_on_gravel, hole, 0, off, 0, is_red);
   g_test_message("%.5f of the hole is a person, without the stage %.5f", with, without);
   g_assert_cmpfloat(with, ==, 0);
   g_assert_cmpfloat(without, >, 0);
@@ -174,8 +175,8 @@ static void strangers_stay_where_they_are(void) {
 /* A small hole's levels are large: things are looked for there, too. */
 static void strangers_stay_beside_small_holes(void) {
   const area hole = {287, 207, 353, 273};
-  const char *settings = "orientation=frontal engine-alike=0";
-  const char *off = "orientation=frontal engine-alike=0 engine-spots=0";
+  const char *settings = "orientation=frontal engine-alike=0 engine-kin=0";
+  const char *off = "orientation=frontal engine-alike=0 engine-kin=0 engine-spots=0";
   double with = part_of(people_by_a_small_hole, hole, 0, settings, 0, is_red);
   double without = part_of(people_by_a_small_hole, hole, 0, off, 0, is_red);
   g_test_message("%.5f of the hole is a person, without the stage %.5f", with, without);

@@ -29,7 +29,9 @@ typedef struct table {
   const rc_mask *finest;
   int exponent;
   const rc_tone *tone;
-  double unit; /* of light */
+  double unit;  /* of light */
+  int coarsest; /* level */
+  rc_kin kin;
   rc_condition *conditions;
 } table;
 
@@ -81,41 +83,43 @@ static recede_status set_light(rc_context *context, table *t, bool *differs) {
 }
 
 /* Of all that any of a cell's pixels has the most; and all where there is nothing to copy. */
-static void add_likeness(rc_likeness *to, const rc_likeness *one) {
+static void add_likeness(rc_likeness *to, rc_likeness one) {
   for (int k = 0; k < RC_KIN_PARTS; k++)
-    if (one->part[k] > to->part[k]) to->part[k] = one->part[k];
+    if (one.part[k] > to->part[k]) to->part[k] = one.part[k];
 }
 
-static void add_nearness(rc_nearness *to, const rc_nearness *one) {
-  if (to->unit == 0) memcpy(to->across, one->across, sizeof to->across);
+static void add_nearness(rc_nearness *to, rc_nearness one) {
+  if (to->unit == 0) memcpy(to->across, one.across, sizeof to->across);
   for (int k = 0; k < RC_KIN_PARTS; k++)
-    if (one->part[k] > to->part[k]) to->part[k] = one->part[k];
-  to->unit = fmaxf(to->unit, one->unit);
+    if (one.part[k] > to->part[k]) to->part[k] = one.part[k];
+  to->unit = fmaxf(to->unit, one.unit);
+}
+
+static void kin_of_cell(const table *t, int column, int row) {
+  int side = 1 << (t->exponent - t->coarsest), cell = row * t->cells.width + column;
+  const rc_mask *flags = t->kin.flags;
+  rc_condition *to = &t->conditions[cell];
+  for (int y = row * side; y < (row + 1) * side && y < flags->height; y++)
+    for (int x = column * side; x < (column + 1) * side && x < flags->width; x++) {
+      uint8_t flag = *rc_flag(flags, x, y);
+      if (flag & RC_SOURCE) add_likeness(&to->likeness, rc_likeness_at(&t->kin, x, y));
+      if (flag & RC_TARGET) add_nearness(&to->nearness, rc_nearness_at(&t->kin, x, y));
+    }
+  if (!(t->cells.data[cell] & RC_SOURCE)) memset(&to->likeness, 255, sizeof to->likeness);
+}
+
+static void kin_row(void *user, int row, int thread) {
+  const table *t = user;
+  (void)thread;
+  for (int column = 0; column < t->cells.width; column++) kin_of_cell(t, column, row);
 }
 
 static recede_status set_kin(rc_context *context, table *t, const rc_image *images,
                              const rc_mask *flags, int levels, bool *told) {
-  const rc_mask *coarsest = &flags[levels - 1];
-  int shift = t->exponent - (levels - 1);
-  size_t pixels = (size_t)coarsest->width * (size_t)coarsest->height;
-  rc_likeness *likeness;
-  rc_nearness *nearness;
   *told = false;
-  if (!rc_is_looked_at(coarsest)) return RECEDE_OK;
-  RC_TRY(RC_NEW(context, pixels, &likeness));
-  RC_TRY(RC_NEW(context, pixels, &nearness));
-  RC_TRY(rc_kin_find(context, images, flags, levels, likeness, nearness, told));
-  if (!*told) return RECEDE_OK;
-  for (int y = 0; y < coarsest->height; y++)
-    for (int x = 0; x < coarsest->width; x++) {
-      size_t at = (size_t)y * (size_t)coarsest->width + (size_t)x;
-      rc_condition *to = &t->conditions[(y >> shift) * t->cells.width + (x >> shift)];
-      if (coarsest->data[at] & RC_SOURCE) add_likeness(&to->likeness, &likeness[at]);
-      if (coarsest->data[at] & RC_TARGET) add_nearness(&to->nearness, &nearness[at]);
-    }
-  for (int i = 0; i < t->cells.width * t->cells.height; i++)
-    if (!(t->cells.data[i] & RC_SOURCE)) memset(&t->conditions[i].likeness, 255, RC_KIN_PARTS);
-  return RECEDE_OK;
+  if (!rc_is_looked_at(&flags[levels - 1])) return RECEDE_OK;
+  RC_TRY(rc_kin_find(context, images, flags, levels, &t->kin, told));
+  return *told ? rc_parallel(context, t->cells.height, kin_row, t) : RECEDE_OK;
 }
 
 recede_status rc_conditions_find(rc_context *context, const rc_image *images, const rc_mask *flags,
@@ -124,7 +128,7 @@ recede_status rc_conditions_find(rc_context *context, const rc_image *images, co
   int exponent = levels - 1 > LEAST_EXPONENT ? levels - 1 : LEAST_EXPONENT;
   int width = (flags[0].width + (1 << exponent) - 1) >> exponent;
   int height = (flags[0].height + (1 << exponent) - 1) >> exponent;
-  table t = {.finest = flags, .exponent = exponent, .tone = tone};
+  table t = {.finest = flags, .exponent = exponent, .coarsest = levels - 1, .tone = tone};
   size_t count = (size_t)width * (size_t)height;
   float *blur;
   *conditions = (rc_conditions){NULL, 0, 0};

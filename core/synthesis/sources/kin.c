@@ -2,13 +2,10 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/real.h"
 #include "image/distance.h"
-#include "synthesis/sources/materials.h"
 #include "synthesis/sources/places.h"
 
 /* What is beside the hole, so near to it as RC_TOUCHING_PX, is every n-th pixel of that; of fewer
@@ -39,57 +36,41 @@
 /* Of so many sources and target pixels each, at the most. */
 #define MOST_EACH 256
 
-typedef struct sample {
+typedef struct rc_kin_sample {
   int x, y, part;
   rc_material material;
 } sample;
-
-typedef struct finder {
-  const rc_mask *flags;
-  const rc_material *materials;
-  uint8_t *from_hole; /* px */
-  sample *samples;    /* in the order of their parts */
-  int count, first[RC_KIN_PARTS + 1];
-  float middle[RC_KIN_PARTS][2];
-  float among[RC_KIN_PARTS][RC_KIN_PARTS]; /* how much of one part looks like the other */
-  float most;                              /* square of the distance up to which they are alike */
-  rc_likeness *likeness;
-  rc_nearness *nearness;
-} finder;
 
 static int square_px(const sample *p, int x, int y) {
   return (p->x - x) * (p->x - x) + (p->y - y) * (p->y - y);
 }
 
-static recede_status measure_distances(rc_context *context, finder *f) {
-  int width = f->flags->width, height = f->flags->height;
+static recede_status take_samples(rc_context *context, rc_kin *f) {
+  int width = f->flags->width, height = f->flags->height, found = 0, seen = 0;
   size_t pixels = (size_t)width * (size_t)height;
-  uint8_t *outside;
-  RC_TRY(RC_NEW(context, pixels, &f->from_hole));
+  uint8_t *outside, *from_hole; /* px */
+  RC_TRY(RC_NEW(context, MOST_SAMPLES, &f->samples));
+  rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, pixels, &outside));
+  RC_TRY(RC_NEW(context, pixels, &from_hole));
   for (size_t i = 0; i < pixels; i++) outside[i] = !(f->flags->data[i] & RC_TARGET);
-  rc_distance_inside(outside, 1, width, height, false, f->from_hole);
-  RC_FREE(context, &outside);
+  rc_distance_inside(outside, 1, width, height, false, from_hole);
+  for (size_t i = 0; i < pixels; i++) {
+    outside[i] = from_hole[i] && from_hole[i] <= RC_TOUCHING_PX && f->flags->data[i] & RC_SOURCE &&
+                 !isnan(f->materials[i].value[0]);
+    found += outside[i];
+  }
+  int step = found / MOST_SAMPLES + 1;
+  for (size_t i = 0; i < pixels; i++)
+    if (outside[i] && seen++ % step == 0)
+      f->samples[f->count++] =
+          (sample){(int)(i % (size_t)width), (int)(i / (size_t)width), 0, f->materials[i]};
+  rc_release(context, mark);
   return rc_poll(context);
 }
 
-static bool is_beside(const finder *f, size_t at) {
-  return f->flags->data[at] & RC_SOURCE && f->from_hole[at] && f->from_hole[at] <= RC_TOUCHING_PX &&
-         !isnan(f->materials[at].value[0]);
-}
-
-static void take_samples(finder *f) {
-  size_t width = (size_t)f->flags->width, pixels = width * (size_t)f->flags->height;
-  int found = 0, seen = 0;
-  for (size_t i = 0; i < pixels; i++) found += is_beside(f, i);
-  int step = found / MOST_SAMPLES + 1;
-  for (size_t i = 0; i < pixels; i++)
-    if (is_beside(f, i) && seen++ % step == 0)
-      f->samples[f->count++] = (sample){(int)(i % width), (int)(i / width), 0, f->materials[i]};
-}
-
 /* Each part has a sample far from all others' for its middle, and what is nearest to that. */
-static void divide(finder *f) {
+static void divide(rc_kin *f) {
   int nearest[MOST_SAMPLES], next = 0;
   for (int i = 0; i < f->count; i++) nearest[i] = INT32_MAX;
   for (int part = 0; part < RC_KIN_PARTS; part++) {
@@ -108,7 +89,7 @@ static int by_part(const void *a, const void *b) {
   return p->part != q->part ? p->part - q->part : place;
 }
 
-static void order_by_part(finder *f) {
+static void order_by_part(rc_kin *f) {
   qsort(f->samples, (size_t)f->count, sizeof *f->samples, by_part);
   for (int i = 0; i < f->count; i++) {
     sample *s = &f->samples[i];
@@ -123,7 +104,7 @@ static void order_by_part(finder *f) {
 }
 
 /* The percentile of the squares; infinite where there are no such samples. */
-static float own_spread(const finder *f) {
+static float own_spread(const rc_kin *f) {
   float nearest[MOST_SAMPLES];
   int count = 0;
   for (int i = 0; i < f->count; i++) {
@@ -143,14 +124,14 @@ static float own_spread(const finder *f) {
 }
 
 /* What part of a part it looks like. */
-static float looks_like(const finder *f, const rc_material *material, int part) {
+static float looks_like(const rc_kin *f, const rc_material *material, int part) {
   int alike = 0, count = f->first[part + 1] - f->first[part];
   for (int i = f->first[part]; i < f->first[part + 1]; i++)
     alike += rc_material_square(material, &f->samples[i].material) <= f->most;
   return count ? (float)alike / (float)count : 0;
 }
 
-static void compare_parts(finder *f) {
+static void compare_parts(rc_kin *f) {
   for (int i = 0; i < f->count; i++) {
     const sample *s = &f->samples[i];
     float share = 1 / (float)(f->first[s->part + 1] - f->first[s->part]);
@@ -159,7 +140,8 @@ static void compare_parts(finder *f) {
   }
 }
 
-static rc_likeness likeness_of(const finder *f, const rc_material *material) {
+rc_likeness rc_likeness_at(const rc_kin *f, int x, int y) {
+  const rc_material *material = &f->materials[(size_t)y * (size_t)f->flags->width + (size_t)x];
   rc_likeness to;
   bool known = !isnan(material->value[0]);
   for (int k = 0; k < RC_KIN_PARTS; k++)
@@ -167,7 +149,7 @@ static rc_likeness likeness_of(const finder *f, const rc_material *material) {
   return to;
 }
 
-static rc_nearness nearness_at(const finder *f, int x, int y) {
+rc_nearness rc_nearness_at(const rc_kin *f, int x, int y) {
   rc_nearness to;
   float near[RC_KIN_PARTS] = {0}, most = 0, sum = 0, usual = 0;
   for (int i = 0; i < f->count; i++)
@@ -192,16 +174,6 @@ static rc_nearness nearness_at(const finder *f, int x, int y) {
   return to;
 }
 
-static void find_row(void *user, int y, int thread) {
-  const finder *f = user;
-  (void)thread;
-  for (int x = 0; x < f->flags->width; x++) {
-    size_t at = (size_t)y * (size_t)f->flags->width + (size_t)x;
-    if (f->flags->data[at] & RC_SOURCE) f->likeness[at] = likeness_of(f, &f->materials[at]);
-    if (f->flags->data[at] & RC_TARGET) f->nearness[at] = nearness_at(f, x, y);
-  }
-}
-
 static float usual_share(const rc_likeness *source, const rc_nearness *target) {
   int sum = 0;
   for (int k = 0; k < RC_KIN_PARTS; k++) sum += source->part[k] * target->part[k];
@@ -218,48 +190,44 @@ static float crossing_share(const rc_likeness *source, const rc_nearness *target
   return (float)most / 255;
 }
 
-/* Every n-th pixel with a flag. */
-static int take_some(const rc_mask *flags, uint8_t flag, size_t taken[MOST_EACH]) {
-  size_t pixels = (size_t)flags->width * (size_t)flags->height, all = 0, seen = 0;
-  int count = 0;
-  for (size_t i = 0; i < pixels; i++) all += flags->data[i] & flag ? 1 : 0;
-  size_t step = all / MOST_EACH + 1;
-  for (size_t i = 0; i < pixels; i++)
-    if (flags->data[i] & flag && seen++ % step == 0) taken[count++] = i;
-  return count;
-}
-
-static bool are_several(const finder *f) {
-  size_t source[MOST_EACH], target[MOST_EACH];
-  int sources = take_some(f->flags, RC_SOURCE, source), foreign = 0;
-  int targets = take_some(f->flags, RC_TARGET, target);
+/* Of every n-th source and target pixel. */
+static bool are_several(const rc_kin *f) {
+  rc_likeness source[MOST_EACH];
+  rc_nearness target[MOST_EACH];
+  int width = f->flags->width, height = f->flags->height, sources = 0, targets = 0, foreign = 0;
+  int all[2] = {0, 0}, seen[2] = {0, 0};
+  for (int i = 0; i < width * height; i++) {
+    all[0] += f->flags->data[i] & RC_SOURCE ? 1 : 0;
+    all[1] += f->flags->data[i] & RC_TARGET ? 1 : 0;
+  }
+  for (int y = 0; y < height; y++)
+    for (int x = 0; x < width; x++) {
+      uint8_t flag = *rc_flag(f->flags, x, y);
+      if (flag & RC_SOURCE && seen[0]++ % (all[0] / MOST_EACH + 1) == 0)
+        source[sources++] = rc_likeness_at(f, x, y);
+      if (flag & RC_TARGET && seen[1]++ % (all[1] / MOST_EACH + 1) == 0)
+        target[targets++] = rc_nearness_at(f, x, y);
+    }
   for (int i = 0; i < sources; i++)
-    for (int k = 0; k < targets; k++)
-      foreign += usual_share(&f->likeness[source[i]], &f->nearness[target[k]]) < FOREIGN;
+    for (int k = 0; k < targets; k++) foreign += usual_share(&source[i], &target[k]) < FOREIGN;
   return foreign >= LEAST_FOREIGN * sources * targets;
 }
 
 recede_status rc_kin_find(rc_context *context, const rc_image *images, const rc_mask *flags,
-                          int levels, rc_likeness *likeness, rc_nearness *nearness, bool *told) {
-  finder f = {.flags = &flags[levels - 1], .likeness = likeness, .nearness = nearness};
+                          int levels, rc_kin *kin, bool *told) {
+  const rc_mask *coarsest = &flags[levels - 1];
   rc_material *materials;
-  rc_block *mark = rc_mark(context);
   *told = false;
-  RC_TRY(RC_NEW(context, (size_t)f.flags->width * (size_t)f.flags->height, &materials));
+  RC_TRY(RC_NEW(context, (size_t)coarsest->width * (size_t)coarsest->height, &materials));
   RC_TRY(rc_materials_find(context, images, flags, levels, HALF_PX, materials));
-  f.materials = materials;
-  RC_TRY(measure_distances(context, &f));
-  RC_TRY(RC_NEW(context, MOST_SAMPLES, &f.samples));
-  take_samples(&f);
-  f.most = TIMES_OWN * TIMES_OWN * own_spread(&f);
-  if (isfinite(f.most)) {
-    divide(&f);
-    order_by_part(&f);
-    compare_parts(&f);
-    RC_TRY(rc_parallel(context, f.flags->height, find_row, &f));
-    *told = are_several(&f);
-  }
-  rc_release(context, mark);
+  *kin = (rc_kin){.flags = coarsest, .materials = materials};
+  RC_TRY(take_samples(context, kin));
+  kin->most = TIMES_OWN * TIMES_OWN * own_spread(kin);
+  if (!isfinite(kin->most)) return RECEDE_OK;
+  divide(kin);
+  order_by_part(kin);
+  compare_parts(kin);
+  *told = are_several(kin);
   return rc_poll(context);
 }
 

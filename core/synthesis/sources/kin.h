@@ -6,6 +6,7 @@
 
 #include "base/context.h"
 #include "image/image.h"
+#include "synthesis/sources/materials.h"
 
 /* What is beside the hole is divided into so many parts. */
 #define RC_KIN_PARTS 16
@@ -22,11 +23,27 @@ typedef struct rc_nearness {
   float unit; /* 0: nothing is told */
 } rc_nearness;
 
-/* images and flags: the pyramid's levels, finest first; likeness and nearness: of the sources and
- * of the target among the pixels of the coarsest. told: so many of the sources are foreign to so
- * much of the hole that there must be several things; else both are undefined. */
+/* What is beside the hole. */
+typedef struct rc_kin {
+  const rc_mask *flags;
+  const rc_material *materials;  /* of each pixel */
+  struct rc_kin_sample *samples; /* in the order of their parts */
+  int count, first[RC_KIN_PARTS + 1];
+  float middle[RC_KIN_PARTS][2];
+  float among[RC_KIN_PARTS][RC_KIN_PARTS]; /* how much of one part looks like the other */
+  float most;                              /* square of the distance up to which they are alike */
+} rc_kin;
+
+/* images and flags: the pyramid's levels, finest first; flags and memory must stay. told: so many
+ * of the sources are foreign to so much of the hole that there must be several things; else kin is
+ * undefined. */
 recede_status rc_kin_find(rc_context *context, const rc_image *images, const rc_mask *flags,
-                          int levels, rc_likeness *likeness, rc_nearness *nearness, bool *told);
+                          int levels, rc_kin *kin, bool *told);
+/* Memory it takes at the most, of each pixel of the coarsest level. */
+#define RC_KIN_BYTES_PER_PX 60
+/* Of a pixel of the coarsest level. */
+rc_likeness rc_likeness_at(const rc_kin *kin, int x, int y);
+rc_nearness rc_nearness_at(const rc_kin *kin, int x, int y);
 /* From 0, what looks like nothing beside the hole there, to 1, what looks like enough of it. */
 float rc_kinship(const rc_likeness *source, const rc_nearness *target);
 

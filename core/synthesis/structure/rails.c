@@ -215,7 +215,7 @@ static bool comes_again(const view *v, rc_rails r) {
 
 /* What most points differ by, squared. */
 static double usual_change(const view *v) {
-  float values[POINTS];
+  float values[POINTS] = {0};
   for (int i = 0; i < v->count; i++)
     values[i] =
         rc_brightness_at(v->image, v->points[i] % v->image->width, v->points[i] / v->image->width);
