@@ -82,7 +82,8 @@ static recede_status set_light(rc_context *context, table *t, bool *differs) {
   return RECEDE_OK;
 }
 
-/* Of all that any of a cell's pixels has the most; and all where there is nothing to copy. */
+/* In doubt a cell is kin: of all that its pixels have it gets the most, and all where none is a
+ * source, but for finer ones beside the hole. */
 static void add_likeness(rc_likeness *to, rc_likeness one) {
   for (int k = 0; k < RC_KIN_PARTS; k++)
     if (one.part[k] > to->part[k]) to->part[k] = one.part[k];
@@ -96,16 +97,18 @@ static void add_nearness(rc_nearness *to, rc_nearness one) {
 }
 
 static void kin_of_cell(const table *t, int column, int row) {
-  int side = 1 << (t->exponent - t->coarsest), cell = row * t->cells.width + column;
+  int side = 1 << (t->exponent - t->coarsest);
   const rc_mask *flags = t->kin.flags;
-  rc_condition *to = &t->conditions[cell];
+  rc_condition *to = &t->conditions[row * t->cells.width + column];
+  bool told = false;
   for (int y = row * side; y < (row + 1) * side && y < flags->height; y++)
     for (int x = column * side; x < (column + 1) * side && x < flags->width; x++) {
       uint8_t flag = *rc_flag(flags, x, y);
       if (flag & RC_SOURCE) add_likeness(&to->likeness, rc_likeness_at(&t->kin, x, y));
+      told = told || flag & RC_SOURCE;
       if (flag & RC_TARGET) add_nearness(&to->nearness, rc_nearness_at(&t->kin, x, y));
     }
-  if (!(t->cells.data[cell] & RC_SOURCE)) memset(&to->likeness, 255, sizeof to->likeness);
+  if (!told) memset(&to->likeness, 255, sizeof to->likeness);
 }
 
 static void kin_row(void *user, int row, int thread) {

@@ -33,7 +33,7 @@ static inline const rc_condition *rc_condition_at(const rc_conditions *condition
 
 /* images and flags: the pyramid's levels, finest first, without the tone; deviation: the texture's,
  * of a channel. focus, kin, light: whether they are to count. The table's memory is the context's,
- * 1.1 bytes for each pixel of the finest level at the most. */
+ * about 1.1 bytes for each pixel of the finest level at the most. */
 recede_status rc_conditions_find(rc_context *context, const rc_image *images, const rc_mask *flags,
                                  int levels, const rc_tone *tone, float deviation, bool focus,
                                  bool kin, bool light, rc_conditions *conditions);

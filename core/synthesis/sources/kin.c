@@ -23,15 +23,16 @@
 #define LEAST_OWN 1.f
 /* What a sample says of a target pixel falls with the square of its distance, and this. */
 #define NEAR_SQUARE_PX 4
-/* A source is foreign to what has less than the first of the usual, no more from the second on, for
- * what lies beside the hole varies. What crosses it, a groove, is little of what is beside it: so
- * what the parts on opposite sides both look like counts, too. */
-#define FOREIGN .1f
+/* A copy is the more foreign the less it has of what is usual; from so much on it is not, for what
+ * lies beside the hole varies. What crosses it, a groove, is little of what is beside it: so what
+ * the parts on opposite sides both look like counts, too. Counted twice it let in a carved stone.
+ */
 #define ENOUGH .3f
 #define OF_CROSSING 1.f
-/* There are several things where so many of all pairs of a source and a target pixel are foreign.
- * One texture has 0 to .13 (stones .01 to .09), bricks seen at a grazing angle .3; paths beside
- * lawns, walls, water and animals .1 to .5. */
+/* There are several things where so many of all pairs of a source and a target pixel have less than
+ * so much of what is usual. One texture has 0 to .13 (stones .01 to .09), bricks seen at a grazing
+ * angle .3; paths beside lawns, walls, water and animals .1 to .5. */
+#define FOREIGN .1f
 #define LEAST_FOREIGN .1
 /* Of so many sources and target pixels each, at the most. */
 #define MOST_EACH 256
@@ -41,8 +42,9 @@ typedef struct rc_kin_sample {
   rc_material material;
 } sample;
 
-static int square_px(const sample *p, int x, int y) {
-  return (p->x - x) * (p->x - x) + (p->y - y) * (p->y - y);
+static int64_t square_px(const sample *p, int x, int y) {
+  int64_t dx = p->x - x, dy = p->y - y;
+  return dx * dx + dy * dy;
 }
 
 static recede_status take_samples(rc_context *context, rc_kin *f) {
@@ -71,15 +73,17 @@ static recede_status take_samples(rc_context *context, rc_kin *f) {
 
 /* Each part has a sample far from all others' for its middle, and what is nearest to that. */
 static void divide(rc_kin *f) {
-  int nearest[MOST_SAMPLES], next = 0;
-  for (int i = 0; i < f->count; i++) nearest[i] = INT32_MAX;
+  int64_t nearest[MOST_SAMPLES];
+  int middle = 0;
+  for (int i = 0; i < f->count; i++) nearest[i] = INT64_MAX;
   for (int part = 0; part < RC_KIN_PARTS; part++) {
-    int middle = next;
+    int next = 0;
     for (int i = 0; i < f->count; i++) {
-      int here = square_px(&f->samples[middle], f->samples[i].x, f->samples[i].y);
+      int64_t here = square_px(&f->samples[middle], f->samples[i].x, f->samples[i].y);
       if (here < nearest[i]) nearest[i] = here, f->samples[i].part = part;
       if (nearest[i] > nearest[next]) next = i;
     }
+    middle = next;
   }
 }
 
@@ -97,7 +101,7 @@ static void order_by_part(rc_kin *f) {
     f->middle[s->part][0] += (float)s->x, f->middle[s->part][1] += (float)s->y;
   }
   for (int k = 0; k < RC_KIN_PARTS; k++) {
-    float count = fmaxf((float)f->first[k + 1], 1);
+    float count = (float)f->first[k + 1];
     f->middle[k][0] /= count, f->middle[k][1] /= count;
     f->first[k + 1] += f->first[k];
   }
@@ -128,7 +132,7 @@ static float looks_like(const rc_kin *f, const rc_material *material, int part) 
   int alike = 0, count = f->first[part + 1] - f->first[part];
   for (int i = f->first[part]; i < f->first[part + 1]; i++)
     alike += rc_material_square(material, &f->samples[i].material) <= f->most;
-  return count ? (float)alike / (float)count : 0;
+  return (float)alike / (float)count;
 }
 
 static void compare_parts(rc_kin *f) {

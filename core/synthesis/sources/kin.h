@@ -40,7 +40,7 @@ typedef struct rc_kin {
 recede_status rc_kin_find(rc_context *context, const rc_image *images, const rc_mask *flags,
                           int levels, rc_kin *kin, bool *told);
 /* Memory it takes at the most, of each pixel of the coarsest level. */
-#define RC_KIN_BYTES_PER_PX 60
+#define RC_KIN_BYTES_PER_PX 68
 /* Of a pixel of the coarsest level. */
 rc_likeness rc_likeness_at(const rc_kin *kin, int x, int y);
 rc_nearness rc_nearness_at(const rc_kin *kin, int x, int y);

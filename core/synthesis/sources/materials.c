@@ -14,9 +14,9 @@
 #define MOST_STEPS 4096
 #define LEAST_STEP .002f
 
-/* Of known pixels: how many, their colours, the square of brightness. Of those of the finer level
+/* Of known pixels: how many, their colours, brightness and its square. Of those of the finer level
  * that have all neighbours: how many, and the squares of what those differ by. */
-enum { KNOWN, RED, GREEN, BLUE, SQUARE, FINER, ALONG, ACROSS, SUMS };
+enum { KNOWN, RED, GREEN, BLUE, BRIGHT, SQUARE, FINER, ALONG, ACROSS, SUMS };
 
 typedef struct finder {
   const rc_image *image, *finer;
@@ -31,18 +31,13 @@ static bool is_known(const rc_mask *flags, int x, int y) {
   return rc_inside(flags->width, flags->height, x, y) && *rc_flag(flags, x, y) & RC_KNOWN;
 }
 
-static float brightness(const rc_image *image, int x, int y) {
-  const float *v = rc_pixel(image, x, y);
-  return image->channels == 1 ? v[0] : (v[0] + v[1] + v[2]) * (1.f / 3);
-}
-
 static void add_grain(const finder *f, int x, int y, float sums[SUMS]) {
   const rc_mask *flags = f->finer_flags;
   if (!is_known(flags, x, y) || !is_known(flags, x - 1, y) || !is_known(flags, x + 1, y) ||
       !is_known(flags, x, y - 1) || !is_known(flags, x, y + 1))
     return;
-  float along = brightness(f->finer, x + 1, y) - brightness(f->finer, x - 1, y);
-  float across = brightness(f->finer, x, y + 1) - brightness(f->finer, x, y - 1);
+  float along = rc_brightness_at(f->finer, x + 1, y) - rc_brightness_at(f->finer, x - 1, y);
+  float across = rc_brightness_at(f->finer, x, y + 1) - rc_brightness_at(f->finer, x, y - 1);
   sums[FINER]++;
   sums[ALONG] += along * along;
   sums[ACROSS] += across * across;
@@ -56,9 +51,10 @@ static void sum_row(void *user, int y, int thread) {
     float *sums = f->sums[(size_t)y * (size_t)width + (size_t)x];
     if (is_known(f->flags, x, y)) {
       const float *v = rc_pixel(f->image, x, y);
-      float bright = brightness(f->image, x, y);
+      float bright = rc_brightness_at(f->image, x, y);
       sums[KNOWN] = 1;
       for (int k = 0; k < 3; k++) sums[RED + k] = v[f->image->channels == 1 ? 0 : k];
+      sums[BRIGHT] = bright;
       sums[SQUARE] = bright * bright;
     }
     for (int j = 0; j < n; j++)
@@ -69,7 +65,7 @@ static void sum_row(void *user, int y, int thread) {
 static void describe(const float sums[SUMS], int pixels, rc_material *out) {
   float known = sums[KNOWN], finer = fmaxf(sums[FINER], 1);
   float red = sums[RED] / known, green = sums[GREEN] / known, blue = sums[BLUE] / known;
-  float bright = (red + green + blue) * (1.f / 3);
+  float bright = sums[BRIGHT] / known;
   out->value[0] = known < LEAST_KNOWN * (float)pixels ? NAN : bright;
   out->value[1] = red - green;
   out->value[2] = blue - (red + green) * .5f;

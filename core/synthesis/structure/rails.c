@@ -13,10 +13,10 @@
 #define RUN_PX 2.f
 #define MOST_ALONG .3
 /* A texture repeats if, moved along by so many px of the coarsest level, it changes by less than
- * this part of what it does moved half as far, and half as far again: bricks, tiles and steps .27
- * to .60, roofs .74 to .91, cracks .72 to 1, boards .9 and more. So it must be also where no point
- * counts more than most differ by: what stands out, as a dash on a road, differs by more than all
- * the rest together. */
+ * this part of what it does moved half as far and, if that is seen, half as far again: bricks,
+ * tiles and steps .27 to .60, roofs .74 to .91, cracks .72 to 1, boards .9 and more. So it must be
+ * also where no point counts more than most differ by: what stands out, as a dash on a road,
+ * differs by more than all the rest together. */
 #define LEAST_PERIOD_PX 6
 #define MOST_PERIOD_PX 64
 #define MOST_REPEATED .69
@@ -28,9 +28,10 @@
 #define COARSE_TURN .008f
 #define FINE_TURN .002f
 #define FINER_BY 2
-/* Where none of the two strongest lines lies along the rails, but for so much from end to end, it
- * would break in the hole: boards have .1 to .8, tracks of wheels beside a bent crack 3.8. */
-#define MOST_STEP_PX 2.f
+/* Where none of the two strongest lines lies along the rails, but for so many px of the coarsest
+ * level from end to end, it would break in the hole: boards have 0 to .2, the wheel tracks beside a
+ * bent crack 1. */
+#define MOST_STEP_PX .4f
 /* Points that are looked at, of scales near the hole's, and how many of them must be seen. */
 #define POINTS 2000
 #define TRIES (8 * POINTS)
@@ -222,7 +223,7 @@ static double usual_change(const view *v) {
   qsort(values, (size_t)v->count, sizeof *values, rc_by_value);
   int end = (int)(STANDS_OUT * v->count);
   double all = v->count ? values[v->count - 1 - end] - values[end] : 0;
-  return all * all;
+  return all > 0 ? all * all : INFINITY;
 }
 
 static bool repeats(view *v, rc_rails r) {
@@ -277,13 +278,13 @@ static float how_far(const rc_crossing *lines, int count, const rc_mask *flags) 
 
 /* Whether one of the two strongest lines, if there are any, lies along the rails. */
 static bool keep_lines_straight(const rc_chart *chart, const rc_crossing *lines, int count,
-                                rc_rails rails) {
+                                int coarse, rc_rails rails) {
   float least = count ? INFINITY : 0;
   for (int i = 0; i < count && i < 2; i++) {
     rc_copy d = rc_crossing_direction(chart, &lines[i]);
     least = fminf(least, fabsf(d.a * rails.b - d.b * rails.a) * rc_crossing_length(&lines[i]));
   }
-  return least <= MOST_STEP_PX;
+  return least <= MOST_STEP_PX * (float)(1 << coarse);
 }
 
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
@@ -311,7 +312,7 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
     set_view(&images[fine], &masks[fine], rc_chart_coarser(*chart, fine), all_of(&masks[fine]),
              NULL, v);
     r = sharpened(v, r, reach_px / (float)(1 << fine), FINE_TURN);
-    if (keep_lines_straight(chart, lines, *count, r)) *rails = r;
+    if (keep_lines_straight(chart, lines, *count, coarse, r)) *rails = r;
   }
   if (*count && !rc_runs(rails)) {
     set_view(&images[coarse], flags, here, near_hole(flags), NULL, v);
