@@ -82,8 +82,8 @@ static recede_status set_light(rc_context *context, table *t, bool *differs) {
   return RECEDE_OK;
 }
 
-/* In doubt a cell is kin: of all that its pixels have it gets the most, and all where none is a
- * source, but for finer ones beside the hole. */
+/* Of all that a cell's pixels have it gets the most; finer ones beside the hole, where none of
+ * these is a source, are what they are made of themselves. */
 static void add_likeness(rc_likeness *to, rc_likeness one) {
   for (int k = 0; k < RC_KIN_PARTS; k++)
     if (one.part[k] > to->part[k]) to->part[k] = one.part[k];
@@ -100,15 +100,17 @@ static void kin_of_cell(const table *t, int column, int row) {
   int side = 1 << (t->exponent - t->coarsest);
   const rc_mask *flags = t->kin.flags;
   rc_condition *to = &t->conditions[row * t->cells.width + column];
+  rc_likeness of_others = {{0}};
   bool told = false;
   for (int y = row * side; y < (row + 1) * side && y < flags->height; y++)
     for (int x = column * side; x < (column + 1) * side && x < flags->width; x++) {
-      uint8_t flag = *rc_flag(flags, x, y);
-      if (flag & RC_SOURCE) add_likeness(&to->likeness, rc_likeness_at(&t->kin, x, y));
-      told = told || flag & RC_SOURCE;
-      if (flag & RC_TARGET) add_nearness(&to->nearness, rc_nearness_at(&t->kin, x, y));
+      bool is_source = *rc_flag(flags, x, y) & RC_SOURCE;
+      add_likeness(is_source ? &to->likeness : &of_others, rc_likeness_at(&t->kin, x, y));
+      told = told || is_source;
+      if (*rc_flag(flags, x, y) & RC_TARGET)
+        add_nearness(&to->nearness, rc_nearness_at(&t->kin, x, y));
     }
-  if (!told) memset(&to->likeness, 255, sizeof to->likeness);
+  if (!told) to->likeness = of_others;
 }
 
 static void kin_row(void *user, int row, int thread) {
