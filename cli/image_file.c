@@ -233,6 +233,9 @@ bool image_file_can_write(const char *path, const image_file *like, int width, i
     note(message, "%s holds 8 bits: 16 were reduced to 8.", format->name);
   if (written == RECEDE_FLOAT && type == RECEDE_HALF)
     note(message, "%s gets floats of 32 bits: half is not written there.", format->name);
+  if (like && format != like->format && strcmp(format->codec, "hdr") == 0)
+    note(message, "%s rounds every pixel to 8 bits and one exponent, and has nothing below 0.",
+         format->name);
   return true;
 }
 

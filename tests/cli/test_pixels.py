@@ -306,11 +306,20 @@ def test_what_the_output_cannot_hold(folder):
     check(b"transparency" in fill("glass", "jpg", 4))
     check(b"reduced to 8" in fill("u16", "jpg", 0))
     check(b"32 bits" in fill("half", "tif", 0) and fill("half", "exr", 0) == b"")
+    check(b"rounds every pixel" in fill("float", "hdr", 0))
     fill("rgba", "jpg", 0)
     check(read(folder / "out.jpg").shape == (48, 64, 3))
     check(b"use .png" in fill("u8", "webp", 4))
     fill("u8", "xyz", 4)
     fill("u8", "", 4)
+
+
+def test_hdr_stays_outside_the_mask(folder):
+    mask = write(folder / "mask.png", hole())
+    image = write(folder / "in.hdr", np.abs(texture(kind="float")))
+    done = recede("fill", image, "--mask", mask, "--frontal", "-o", folder / "out.hdr")
+    check(done.stderr == b"", done.stderr)
+    check(same_bits(outside(read(image), hole()), outside(read(folder / "out.hdr"), hole())))
 
 
 def test_webp_is_read(folder):
