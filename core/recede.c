@@ -84,7 +84,7 @@ static recede_status begin(recede_job *job) {
   memset(&context->report, 0, sizeof context->report);
   context->message[0] = '\0';
   context->peak_bytes = context->allocations = 0;
-  context->fraction = context->last_poll = 0;
+  context->fraction = context->last_poll = context->span_from = 0;
   context->stage = NULL;
   context->report.threads = context->threads;
   context->report.seed = job->params.seed;
@@ -205,7 +205,7 @@ static recede_status run_method(recede_job *job, const rc_problem *problem, rc_i
   rc_context *context = &job->context;
   *filled = problem->image;
   if (job->params.method == RECEDE_METHOD_PLANE)
-    return rc_fill_plane(context, problem, &job->params, filled);
+    return rc_fill_in_steps(context, problem, &job->params, filled);
   RC_TRY(rc_image_new(context, problem->image.width, problem->image.height, problem->image.channels,
                       filled));
   memcpy(filled->data, problem->image.data,

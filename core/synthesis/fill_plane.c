@@ -2,6 +2,8 @@
  * sources near -> tone -> pyramid -> sources that look alike -> lines, rails, boundary, gauge,
  * regions -> sources without spots and strangers -> tracks -> conditions -> traits -> start ->
  * (search <-> vote) per level, coarse to fine -> composition -> detail. */
+#include "synthesis/fill_plane.h"
+
 #include <math.h>
 
 #include "base/memory.h"
@@ -10,7 +12,6 @@
 #include "image/tone.h"
 #include "synthesis/composition/compose.h"
 #include "synthesis/composition/detail.h"
-#include "synthesis/problem.h"
 #include "synthesis/search/cuts.h"
 #include "synthesis/search/descent.h"
 #include "synthesis/search/effort.h"
@@ -175,7 +176,8 @@ static recede_status find_regions(rc_context *context, rc_descent *e) {
   return RECEDE_OK;
 }
 
-static void count_magnified(rc_context *context, const rc_descent *e, const rc_level *level) {
+static void count_shortfall(rc_context *context, const rc_descent *e, const rc_level *level,
+                            rc_shortfall *shortfall) {
   recede_report *report = &context->report;
   uint64_t missing = 0;
   for (int y = level->box.y0; y < level->box.y1; y++)
@@ -188,22 +190,13 @@ static void count_magnified(rc_context *context, const rc_descent *e, const rc_l
       }
       rc_place place =
           rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
+      if (e->rest && e->rest[(size_t)y * (size_t)level->width + (size_t)x]) continue;
       if (place.ratio < .8f) report->magnified_pixels++;
       if (1 / place.ratio > report->largest_magnification)
         report->largest_magnification = 1 / place.ratio;
     }
-  if (report->magnified_pixels)
-    rc_warn(context,
-            "%llu px had to be magnified (up to %.1f times): no source of their size exists.",
-            (unsigned long long)report->magnified_pixels, report->largest_magnification);
-  if (e->rest > missing)
-    rc_warn(context,
-            "%llu px are too small or too large for any source and continue what is beside "
-            "them.",
-            (unsigned long long)(e->rest - missing));
-  if (missing)
-    rc_warn(context, "%llu px found no source and got the smooth tone alone.",
-            (unsigned long long)missing);
+  shortfall->continued = e->rest_count - missing;
+  shortfall->missing = missing;
 }
 
 /* The guide itself, for the ablation: what the averaging of votes alone would give. A level that
@@ -264,8 +257,9 @@ static recede_status take_tracks(rc_context *context, const rc_descent *e, const
 }
 
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
-                            const recede_params *params, rc_image *filled) {
-  rc_descent e = {.params = params, .kernels = rc_kernels_select(context->host.kernel)};
+                            const recede_params *params, rc_image *filled,
+                            rc_shortfall *shortfall) {
+  rc_descent e = {.params = params, .kernels = rc_kernels_select(context->host.kernel), .rest = shortfall->rest};
   bool raised = true;
   rc_tone tone;
   rc_tracks tracks = {.alike = 0};
@@ -312,9 +306,10 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(compose(context, &e, &finest, filled));
   RC_TRY(rc_stage(context, "detail", .93, .97));
   if (params->engine_detail) RC_TRY(rc_match_detail(context, &finest, filled));
-  count_magnified(context, &e, &finest);
-  RC_TRY(rc_tracks_apply(context, &tracks, &e.chart, 0, &problem->flags, RC_TARGET, 1, filled));
-  return rc_tone_apply(context, &tone, &problem->flags, RC_TARGET, 1, filled);
+  count_shortfall(context, &e, &finest, shortfall);
+  const uint8_t all = RC_TARGET | RC_KNOWN;
+  RC_TRY(rc_tracks_apply(context, &tracks, &e.chart, 0, &problem->flags, all, 1, filled));
+  return rc_tone_apply(context, &tone, &problem->flags, all, 1, filled);
 }
 
 uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int channels,

@@ -18,10 +18,10 @@ typedef struct rc_problem {
 } rc_problem;
 
 /* Each fills the TARGET pixels of *filled, which starts as problem->image (for method plane it IS
- * problem->image, whose other pixels are then overwritten, and takes RC_SOURCE from what is far
+ * problem->image, whose other pixels may then be overwritten, and takes RC_SOURCE from what is far
  * from the hole or looks like nothing beside it); progress runs over 0.05..0.97. */
-recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
-                            const recede_params *params, rc_image *filled);
+recede_status rc_fill_in_steps(rc_context *context, const rc_problem *problem,
+                               const recede_params *params, rc_image *filled);
 /* Methods paper and kwatra: params->method says which. */
 recede_status rc_fill_paper(rc_context *context, const rc_problem *problem,
                             const recede_params *params, rc_image *filled);

@@ -99,5 +99,6 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
     coarser = level;
   }
   *finest = level;
-  return rc_continue_rest(context, finest, rc_key((uint64_t)e->params->seed, 98, 0), &e->rest);
+  return rc_continue_rest(context, finest, rc_key((uint64_t)e->params->seed, 98, 0), e->rest,
+                          &e->rest_count);
 }

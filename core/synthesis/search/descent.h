@@ -32,7 +32,8 @@ typedef struct rc_descent {
   rc_sides sides;                            /* of the finest level */
   bool on_rails, on_lattice, continue_lines; /* starts that kept to them fitted well enough */
   int cut_level; /* the coarsest where seams are led by cuts; level_count: nowhere */
-  uint64_t rest; /* out: pixels that only continue what lies beside them */
+  uint8_t *rest;       /* of each pixel; out: 1 where it only continues what lies beside it */
+  uint64_t rest_count; /* out */
 } rc_descent;
 
 /* Makes the finest level, its field settled into whole copies. Progress .1 .. .8. */

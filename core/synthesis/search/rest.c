@@ -77,13 +77,17 @@ static void spread(rest *r) {
   }
 }
 
-recede_status rc_continue_rest(rc_context *context, rc_level *level, uint64_t key,
+recede_status rc_continue_rest(rc_context *context, rc_level *level, uint64_t key, uint8_t *marked,
                                uint64_t *count) {
   rest r = {.level = level, .key = key};
   rc_block *mark = rc_mark(context);
   *count = 0;
   for (int y = level->box.y0; y < level->box.y1; y++)
-    for (int x = level->box.x0; x < level->box.x1; x++) *count += lacks(level, x, y);
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      if (!lacks(level, x, y)) continue;
+      if (marked) marked[(size_t)y * (size_t)level->width + (size_t)x] = 1;
+      ++*count;
+    }
   if (!*count) return RECEDE_OK;
   bool sorted = level->order != NULL;
   if (!sorted) RC_TRY(rc_level_sort_sources(context, level));

@@ -1,0 +1,20 @@
+/* Method plane in one step: all that there is to fill, from what there is to copy from. */
+#ifndef RECEDE_SYNTHESIS_FILL_PLANE_H
+#define RECEDE_SYNTHESIS_FILL_PLANE_H
+
+#include "synthesis/problem.h"
+
+/* Target pixels that no source is right for. */
+typedef struct rc_shortfall {
+  uint8_t *rest;      /* in: of each pixel of the problem, 0; out: 1 for those */
+  uint64_t continued; /* too small or too large for any: they go on what is beside them */
+  uint64_t missing;   /* have the smooth tone alone */
+} rc_shortfall;
+
+/* As problem.h says of all methods. Of the other pixels known ones are as before, but for rounding.
+ * Adds to what the report has of magnified pixels, those of the rest left out. */
+recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
+                            const recede_params *params, rc_image *filled,
+                            rc_shortfall *shortfall);
+
+#endif

@@ -1,0 +1,219 @@
+/* Method plane: what is too far away for any source is filled after the rest, from it. Its patches
+ * cover so much more of the plane than nearer ones that none lies wholly in source: of a texture
+ * seen only at one's feet that is most of a floor. */
+#include <string.h>
+
+#include "base/memory.h"
+#include "synthesis/fill_plane.h"
+
+/* Steps are worth their time for so much of the target. */
+#define LEAST_REST .01
+/* Pixels are sorted by w into bins, eight an octave, 1 in the middle: those of a float's first
+ * mantissa bits, so of 1.07 to 1.13 times each. */
+#define BIN_SHIFT 20
+#define BINS 192
+/* A step goes as far as there are sources no more than so many bins, about 1.7 times, nearer. At
+ * twice, joints break off. */
+#define REACH_BINS 6
+/* Sources, of the targets as far away: beside most holes there are more. */
+#define ENOUGH .25
+/* What is left is done at once when it is less than this part of all: a strip along the horizon,
+ * thinner than a patch. */
+#define LAST_PART .03
+/* A step looks at what is up to so many times nearer than what it fills. */
+#define LOOKED_AT 3.f
+
+typedef struct tally {
+  uint64_t target[BINS], source[BINS];
+} tally;
+
+typedef struct steps {
+  const rc_problem *problem;
+  const recede_params *params;
+  rc_image *filled;
+  rc_mask flags; /* of all: what has been filled is a source */
+  rc_shortfall shortfall;
+  uint64_t targets, done;
+} steps;
+
+static int bin_of(const rc_line *line, int x, int y) {
+  const uint32_t one = 0x3f800000;
+  float w = (float)rc_w(line, x, y);
+  uint32_t bits;
+  if (!(w > 0)) return 0;
+  memcpy(&bits, &w, sizeof bits);
+  int bin = (int)(bits >> BIN_SHIFT) - (int)(one >> BIN_SHIFT) + BINS / 2;
+  return bin < 0 ? 0 : bin < BINS ? bin : BINS - 1;
+}
+
+static void count(const rc_line *line, const rc_mask *flags, tally *t) {
+  memset(t, 0, sizeof *t);
+  for (int y = 0; y < flags->height; y++)
+    for (int x = 0; x < flags->width; x++) {
+      uint8_t flag = *rc_flag(flags, x, y);
+      if (!(flag & (RC_TARGET | RC_SOURCE))) continue;
+      (flag & RC_TARGET ? t->target : t->source)[bin_of(line, x, y)]++;
+    }
+}
+
+/* From bin first up to, not with, last. */
+static uint64_t sum(const uint64_t bins[BINS], int first, int last) {
+  uint64_t all = 0;
+  for (int i = first; i < last && i < BINS; i++) all += bins[i];
+  return all;
+}
+
+/* The farthest bin of the next step: beyond it all sources are much nearer than the target. */
+static int farthest(const tally *t) {
+  int bin = BINS - 1;
+  for (; bin >= 0; bin--) {
+    int reach = bin + REACH_BINS + 1;
+    double targets = (double)sum(t->target, bin, reach);
+    if (t->target[bin] && (double)sum(t->source, 0, reach) < ENOUGH * targets &&
+        sum(t->source, reach, BINS))
+      break;
+  }
+  return bin + 1;
+}
+
+/* Of the target's bins from first on: what is looked at to fill them. */
+static rc_box box_of_step(const steps *s, int first) {
+  const rc_mask *flags = &s->flags;
+  rc_line line = s->problem->line;
+  rc_box box = {flags->width, flags->height, 0, 0};
+  float nearest = 0;
+  for (int y = 0; y < flags->height; y++)
+    for (int x = 0; x < flags->width; x++)
+      if (*rc_flag(flags, x, y) & RC_TARGET && bin_of(&line, x, y) >= first)
+        nearest = (float)rc_w(&line, x, y) > nearest ? (float)rc_w(&line, x, y) : nearest;
+  for (int y = 0; y < flags->height; y++)
+    for (int x = 0; x < flags->width; x++) {
+      if (!*rc_flag(flags, x, y) || (float)rc_w(&line, x, y) > LOOKED_AT * nearest) continue;
+      if (x < box.x0) box.x0 = x;
+      if (x >= box.x1) box.x1 = x + 1;
+      if (y < box.y0) box.y0 = y;
+      box.y1 = y + 1;
+    }
+  return box;
+}
+
+/* The part of the whole in the box, with its own target. */
+static recede_status cut_out(rc_context *context, const steps *s, rc_box box, int first,
+                             rc_problem *part) {
+  int width = box.x1 - box.x0, height = box.y1 - box.y0, channels = s->filled->channels;
+  double sum_x = 0, sum_y = 0, targets = 0;
+  *part = *s->problem;
+  part->line.c = rc_w(&part->line, box.x0, box.y0);
+  RC_TRY(rc_image_new(context, width, height, channels, &part->image));
+  RC_TRY(rc_mask_new(context, width, height, &part->flags));
+  for (int y = 0; y < height; y++) {
+    memcpy(rc_flag(&part->flags, 0, y), rc_flag(&s->flags, box.x0, box.y0 + y), (size_t)width);
+    for (int x = 0; x < width; x++) {
+      uint8_t *flag = rc_flag(&part->flags, x, y);
+      if (*flag & RC_KNOWN)
+        memcpy(rc_pixel(&part->image, x, y), rc_pixel(s->filled, box.x0 + x, box.y0 + y),
+               (size_t)channels * sizeof(float));
+      if (!(*flag & RC_TARGET)) continue;
+      if (bin_of(&s->problem->line, box.x0 + x, box.y0 + y) < first)
+        *flag = 0; /* a later step's */
+      else
+        sum_x += x, sum_y += y, targets++;
+    }
+  }
+  double unit = rc_w(&part->line, sum_x / targets, sum_y / targets);
+  part->line = (rc_line){part->line.a / unit, part->line.b / unit, part->line.c / unit};
+  part->target = rc_box_of(&part->flags, RC_TARGET);
+  return RECEDE_OK;
+}
+
+/* Fills the bins of the target from first on. */
+static recede_status fill_step(rc_context *context, steps *s, int first) {
+  rc_problem part;
+  recede_params params = *s->params;
+  rc_shortfall shortfall = {NULL, 0, 0};
+  rc_box box = box_of_step(s, first);
+  rc_block *mark = rc_mark(context);
+  RC_TRY(cut_out(context, s, box, first, &part));
+  params.surface = context->report.surface; /* one for all */
+  RC_TRY(rc_fill_plane(context, &part, &params, &part.image, &shortfall));
+  for (int y = part.target.y0; y < part.target.y1; y++)
+    for (int x = part.target.x0; x < part.target.x1; x++) {
+      if (!(*rc_flag(&part.flags, x, y) & RC_TARGET)) continue;
+      memcpy(rc_pixel(s->filled, box.x0 + x, box.y0 + y), rc_pixel(&part.image, x, y),
+             (size_t)part.image.channels * sizeof(float));
+      *rc_flag(&s->flags, box.x0 + x, box.y0 + y) = RC_KNOWN | RC_SOURCE;
+      s->done++;
+    }
+  s->shortfall.continued += shortfall.continued;
+  s->shortfall.missing += shortfall.missing;
+  rc_release(context, mark);
+  return RECEDE_OK;
+}
+
+/* Of what was filled at once, the bins from first on stay. */
+static void keep_first(steps *s, int first) {
+  s->shortfall.continued = 0;
+  for (int y = 0; y < s->flags.height; y++)
+    for (int x = 0; x < s->flags.width; x++) {
+      uint8_t *flag = rc_flag(&s->flags, x, y);
+      if (!(*flag & RC_TARGET) || bin_of(&s->problem->line, x, y) < first) continue;
+      bool rest = s->shortfall.rest[(size_t)y * (size_t)s->flags.width + (size_t)x];
+      *flag = rest ? RC_KNOWN : RC_KNOWN | RC_SOURCE;
+      s->shortfall.continued += rest;
+      s->done++;
+    }
+}
+
+static recede_status fill_rest(rc_context *context, steps *s) {
+  const rc_line *line = &s->problem->line;
+  tally t;
+  RC_TRY(rc_mask_new(context, s->flags.width, s->flags.height, &s->flags));
+  memcpy(s->flags.data, s->problem->flags.data, (size_t)s->flags.width * (size_t)s->flags.height);
+  count(line, &s->flags, &t);
+  int first = farthest(&t);
+  if (!sum(t.target, 0, first)) return RECEDE_OK; /* what is left is near */
+  keep_first(s, first);
+  while (s->done < s->targets) {
+    count(line, &s->flags, &t);
+    first = farthest(&t);
+    bool last = (double)sum(t.target, 0, first) < LAST_PART * (double)s->targets;
+    if (last || !sum(t.target, first, BINS)) first = 0;
+    rc_span(context, .5 + .5 * (double)s->done / (double)s->targets);
+    RC_TRY(fill_step(context, s, first));
+  }
+  return RECEDE_OK;
+}
+
+static void tell(rc_context *context, const rc_shortfall *shortfall) {
+  const recede_report *report = &context->report;
+  if (report->magnified_pixels)
+    rc_warn(context,
+            "%llu px had to be magnified (up to %.1f times): no source of their size exists.",
+            (unsigned long long)report->magnified_pixels, report->largest_magnification);
+  if (shortfall->continued)
+    rc_warn(context,
+            "%llu px are too small or too large for any source and continue what is beside "
+            "them.",
+            (unsigned long long)shortfall->continued);
+  if (shortfall->missing)
+    rc_warn(context, "%llu px found no source and got the smooth tone alone.",
+            (unsigned long long)shortfall->missing);
+}
+
+recede_status rc_fill_in_steps(rc_context *context, const rc_problem *problem,
+                               const recede_params *params, rc_image *filled) {
+  steps s = {.problem = problem, .params = params, .filled = filled, .flags = problem->flags};
+  tally t;
+  RC_TRY(RC_NEW_ZERO(context, (size_t)problem->flags.width * (size_t)problem->flags.height,
+                     &s.shortfall.rest));
+  rc_block *mark = rc_mark(context);
+  RC_TRY(rc_fill_plane(context, problem, params, filled, &s.shortfall));
+  rc_release(context, mark);
+  count(&problem->line, &problem->flags, &t);
+  s.targets = sum(t.target, 0, BINS);
+  if ((double)s.shortfall.continued >= LEAST_REST * (double)s.targets)
+    RC_TRY(fill_rest(context, &s));
+  rc_span(context, 0);
+  tell(context, &s.shortfall);
+  return RECEDE_OK;
+}
