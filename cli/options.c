@@ -82,7 +82,8 @@ static const char *keep(GStringChunk *kept, char *text) {
 /* The rows of the table that are options; the source of the orientation follows from which of them
  * are given. orientation: those of the orientation, or the others. GOption keeps pointers: kept
  * must live as long as the group. */
-static void add_params(GOptionGroup *group, bool orientation, GStringChunk *kept) {
+static void add_params(GOptionGroup *group, options_of command, bool orientation,
+                       GStringChunk *kept) {
   static const char *const of_orientation[] = {"slant", "tilt", "fov", "horizon", "quad", NULL};
   size_t rows;
   const recede_param_info *table = recede_param_table(&rows);
@@ -90,6 +91,7 @@ static void add_params(GOptionGroup *group, bool orientation, GStringChunk *kept
     const recede_param_info *row = &table[i];
     if (!(row->flags & RECEDE_PARAM_COMMAND) || strcmp(row->key, "orientation") == 0) continue;
     if (g_strv_contains(of_orientation, row->key) != orientation) continue;
+    if (row->flags & RECEDE_PARAM_SYNTHESIS && command != SYNTHESIZE) continue;
     GOptionEntry entries[] = {{row->key, 0, is_switch(row) ? G_OPTION_FLAG_NO_ARG : 0,
                                G_OPTION_ARG_CALLBACK, (gpointer)on_param,
                                keep(kept, explanation(row)),
@@ -281,9 +283,9 @@ bool options_parse(options_of command, int argc, char **argv, options *given) {
       ENTRY("frontal", 0, NONE, frontal, "The plane is seen from the front: no perspective", NULL),
       END};
   GStringChunk *kept = g_string_chunk_new(4096);
-  add_params(group, true, kept);
+  add_params(group, command, true, kept);
   g_option_group_add_entries(group, frontal);
-  if (command != ORIENT) add_params(group, false, kept);
+  if (command != ORIENT) add_params(group, command, false, kept);
   add_common(group, given);
   g_option_context_set_main_group(context, group);
   bool good =

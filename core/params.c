@@ -26,6 +26,9 @@ static const char *const methods[] = {"plane", "paper", "kwatra", NULL};
 static const char *const method_labels[] = {N_("Copies within the plane"),
                                             N_("Scale-guided optimization (2014 paper)"),
                                             N_("Texture optimization (baseline)"), NULL};
+static const char *const exemplars[] = {"receding", "frontal", NULL};
+static const char *const exemplar_labels[] = {N_("In perspective, as the new image shows it"),
+                                              N_("From the front"), NULL};
 static const char *const qualities[] = {"draft", "normal", "best", NULL};
 static const char *const quality_labels[] = {N_("Draft"), N_("Normal"), N_("Best"), NULL};
 
@@ -72,6 +75,11 @@ static const recede_param_info table[] = {
               "detail, too, and takes longer"),
            1, qualities, quality_labels, COMMON),
     INT("seed", seed, N_("See_d"), N_("Another seed gives another fill"), 0, 2147483647, 0, COMMON),
+    CHOICE(
+        "exemplar", exemplar, N_("Texture is see_n"),
+        N_("Whether the exemplar recedes as the result does, or is seen from the front and to be "
+           "laid onto the plane"),
+        0, exemplars, exemplar_labels, COMMON | RECEDE_PARAM_SYNTHESIS),
     POINTS("horizon", horizon, N_("Horizon"), N_("Two points of the horizon: X1,Y1,X2,Y2"), 4),
     POINTS("quad", quad, N_("Quad"),
            N_("Four corners of a rectangle on the plane: X1,Y1,X2,Y2,X3,Y3,X4,Y4"), 8),

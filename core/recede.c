@@ -242,11 +242,24 @@ recede_status recede_job_fill(recede_job *job, const recede_view *result) {
 
 /* ------------------------------------------------------------------------------ synthesize -- */
 
+static recede_status check_frontal(recede_job *job) {
+  if (job->params.orientation == RECEDE_ORIENTATION_AUTO)
+    return rc_fail(&job->context, RECEDE_ARGUMENT,
+                   "An exemplar seen from the front does not tell how the plane lies: give slant "
+                   "and tilt, a horizon or a quad.");
+  if (job->params.method != RECEDE_METHOD_PLANE)
+    return rc_fail(&job->context, RECEDE_ARGUMENT,
+                   "Methods paper and kwatra need an exemplar in perspective: use method plane for "
+                   "one seen from the front.");
+  return RECEDE_OK;
+}
+
 static recede_status plan_synthesis(recede_job *job, int width, int height) {
   if (width < 1 || height < 1 || width > 1 << 20 || height > 1 << 20)
     return rc_fail(&job->context, RECEDE_ARGUMENT, "The size %d x %d is outside 1..1048576.", width,
                    height);
   RC_TRY(check_same_size(job, &job->source, "source mask"));
+  if (job->params.exemplar == RECEDE_EXEMPLAR_FRONTAL) RC_TRY(check_frontal(job));
   uint64_t pixels = (uint64_t)width * (uint64_t)height;
   uint64_t exemplar = (uint64_t)job->image.width * (uint64_t)job->image.height;
   return refuse_too_large(&job->context,
@@ -273,12 +286,17 @@ static recede_status synthesize_in_plane(recede_job *job, const recede_plane *pl
   rc_views views = exemplar_of(job);
   rc_problem problem;
   rc_image filled;
-  RC_TRY(rc_problem_of_synthesis(&job->context, &views, plane, &problem));
+  /* Seen from the front like the result it is the result's middle, pixel by pixel. */
+  bool laid = job->params.exemplar == RECEDE_EXEMPLAR_FRONTAL &&
+              (plane->normal[0] != 0 || plane->normal[1] != 0);
+  RC_TRY(rc_problem_of_synthesis(&job->context, &views, plane, laid, &problem));
   RC_TRY(run_method(job, &problem, &filled));
   RC_TRY(rc_stage(&job->context, "write", .97, 1));
-  float least = rc_least_known(&job->image, &problem, problem.exemplar_x, problem.exemplar_y);
+  float least = laid
+                    ? problem.least
+                    : rc_least_known(&job->image, &problem, problem.exemplar_x, problem.exemplar_y);
   rc_write_synthesis(&filled, &problem.flags, least, result);
-  rc_write_exemplar(&job->image, &problem, result);
+  if (!laid) rc_write_exemplar(&job->image, &problem, result);
   return RECEDE_OK;
 }
 

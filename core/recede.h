@@ -145,6 +145,10 @@ typedef enum recede_method {
   RECEDE_METHOD_PAPER,
   RECEDE_METHOD_KWATRA
 } recede_method;
+/* Of a synthesis by method plane. RECEDING: a picture of the plane by the result's camera, it
+ * becomes the result's middle. FRONTAL: a picture of the texture from the front, it is laid onto
+ * the plane, where that comes nearest one px across for each of its own. */
+typedef enum recede_exemplar { RECEDE_EXEMPLAR_RECEDING, RECEDE_EXEMPLAR_FRONTAL } recede_exemplar;
 typedef enum recede_quality {
   RECEDE_QUALITY_DRAFT,
   RECEDE_QUALITY_NORMAL,
@@ -163,6 +167,7 @@ typedef struct recede_params {
   recede_method method;
   recede_quality quality;
   int64_t seed;
+  recede_exemplar exemplar;
   int paper_literal; /* 1: the paper as printed; 0: repaired (docs in core/synthesis/paper) */
   /* Developers' parameters: 0 switches a stage off or, where the table says so, means "by
    * quality". */
@@ -191,9 +196,10 @@ typedef enum recede_param_type {
 } recede_param_type;
 
 typedef enum recede_param_flags {
-  RECEDE_PARAM_COMMAND = 1,  /* an option of the command */
-  RECEDE_PARAM_HOST = 2,     /* an argument of the GIMP procedures, in the table's order */
-  RECEDE_PARAM_DEVELOPER = 4 /* reachable as "key=value" only */
+  RECEDE_PARAM_COMMAND = 1,   /* an option of the command */
+  RECEDE_PARAM_HOST = 2,      /* an argument of the GIMP procedures, in the table's order */
+  RECEDE_PARAM_DEVELOPER = 4, /* reachable as "key=value" only */
+  RECEDE_PARAM_SYNTHESIS = 8  /* says something of a synthesis alone */
 } recede_param_flags;
 
 typedef struct recede_param_info {
@@ -298,7 +304,10 @@ RECEDE_API recede_status recede_job_estimate_synthesize(recede_job *job, int wid
 /* result: size, channels and type of the image; may be the image's own memory. Outside the mask it
  * receives the image's pixels bit for bit. Filled pixels become opaque. */
 RECEDE_API recede_status recede_job_fill(recede_job *job, const recede_view *result);
-/* The image is the exemplar; result has its channels and type and any size. */
+/* The image is the exemplar; result has its channels and type and any size. The orientation is the
+ * result's (methods paper and kwatra: the exemplar's). What lies beyond the horizon becomes 0,
+ * transparent where there is alpha. RECEDE_ARGUMENT for a frontal exemplar without an orientation,
+ * or with another method than plane. */
 RECEDE_API recede_status recede_job_synthesize(recede_job *job, const recede_view *result);
 /* Of the last run. */
 RECEDE_API const recede_report *recede_job_report(const recede_job *job);

@@ -259,7 +259,9 @@ static recede_status take_tracks(rc_context *context, const rc_descent *e, const
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                             const recede_params *params, rc_image *filled,
                             rc_shortfall *shortfall) {
-  rc_descent e = {.params = params, .kernels = rc_kernels_select(context->host.kernel), .rest = shortfall->rest};
+  rc_descent e = {.params = params,
+                  .kernels = rc_kernels_select(context->host.kernel),
+                  .rest = shortfall->rest};
   bool raised = true;
   rc_tone tone;
   rc_tracks tracks = {.alike = 0};
@@ -333,5 +335,6 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int ch
   uint64_t descent = levels + (last > detail ? last : detail);
   /* Before it, of the coarsest level. */
   uint64_t kin = RC_KIN_BYTES_PER_PX * (pixels < RC_MOST_LOOKED_AT ? pixels : RC_MOST_LOOKED_AT);
-  return pyramid + conditions + (descent > kin ? descent : kin) + ((uint64_t)4 << 20);
+  uint64_t steps = pixels * (4 * c + 3);
+  return pyramid + conditions + (descent > kin ? descent : kin) + steps + ((uint64_t)4 << 20);
 }

@@ -14,7 +14,6 @@ typedef struct rc_shortfall {
 /* As problem.h says of all methods. Of the other pixels known ones are as before, but for rounding.
  * Adds to what the report has of magnified pixels, those of the rest left out. */
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
-                            const recede_params *params, rc_image *filled,
-                            rc_shortfall *shortfall);
+                            const recede_params *params, rc_image *filled, rc_shortfall *shortfall);
 
 #endif

@@ -15,6 +15,7 @@ typedef struct rc_problem {
   int origin_x, origin_y;     /* of image in the whole picture */
   int exemplar_x, exemplar_y; /* synthesis: exemplar's pixel at image's (0, 0) */
   bool synthesis;             /* all of the exemplar is wanted */
+  float least;                /* of a laid exemplar's known values, or 0 if that is less */
 } rc_problem;
 
 /* Each fills the TARGET pixels of *filled, which starts as problem->image (for method plane it IS

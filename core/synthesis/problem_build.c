@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "image/view.h"
+#include "synthesis/lay.h"
 
 /* The margin around a hole: small ones need several texels, whatever their size; large ones hold
  * many themselves. */
@@ -208,9 +209,20 @@ recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
   return check_source(context, problem);
 }
 
-recede_status rc_problem_of_synthesis(rc_context *context, const rc_views *exemplar,
-                                      const recede_plane *plane, rc_problem *problem) {
-  int width = plane->width, height = plane->height, channels = exemplar->image->channels;
+/* All of a view as a problem has it. */
+static recede_status read_all(rc_context *context, const rc_views *views, rc_problem *part) {
+  int width = views->image->width, height = views->image->height;
+  int colours = views->image->channels < 3 ? 1 : 3;
+  *part = (rc_problem){.origin_x = 0, .origin_y = 0};
+  RC_TRY(rc_image_new(context, width, height, colours, &part->image));
+  RC_TRY(rc_mask_new(context, width, height, &part->flags));
+  return read_pixels(context, views, part);
+}
+
+/* The exemplar as it is, or what the result has room for. */
+static recede_status put_in_middle(rc_context *context, const rc_views *exemplar,
+                                   rc_problem *problem) {
+  int width = problem->image.width, height = problem->image.height;
   rc_views cropped = *exemplar;
   recede_view middle = *exemplar->image, source;
   int cut_x = middle.width > width ? (middle.width - width) / 2 : 0;
@@ -224,32 +236,47 @@ recede_status rc_problem_of_synthesis(rc_context *context, const rc_views *exemp
     source.data = rc_view_pixel(exemplar->source, cut_x, cut_y);
     cropped.source = &source;
   }
-  rc_problem part = {.origin_x = 0, .origin_y = 0};
-  int colours = channels < 3 ? 1 : 3, x0 = (width - middle.width) / 2,
-      y0 = (height - middle.height) / 2;
-  *problem = (rc_problem){
-      .plane = *plane, .exemplar_x = cut_x - x0, .exemplar_y = cut_y - y0, .synthesis = true};
-  RC_TRY(rc_image_new(context, width, height, colours, &problem->image));
-  RC_TRY(rc_mask_new(context, width, height, &problem->flags));
-  rc_block *mark = rc_mark(context);
-  RC_TRY(rc_image_new(context, middle.width, middle.height, colours, &part.image));
-  RC_TRY(rc_mask_new(context, middle.width, middle.height, &part.flags));
-  RC_TRY(read_pixels(context, &cropped, &part));
+  rc_problem part;
+  int x0 = (width - middle.width) / 2, y0 = (height - middle.height) / 2;
+  problem->exemplar_x = cut_x - x0, problem->exemplar_y = cut_y - y0;
+  RC_TRY(read_all(context, &cropped, &part));
   memset(problem->flags.data, RC_TARGET, (size_t)width * (size_t)height);
   for (int y = 0; y < middle.height; y++) {
     memcpy(rc_pixel(&problem->image, x0, y0 + y), rc_pixel(&part.image, 0, y),
-           (size_t)middle.width * (size_t)colours * sizeof(float));
+           (size_t)middle.width * (size_t)part.image.channels * sizeof(float));
     for (int x = 0; x < middle.width; x++) {
       uint8_t flag = *rc_flag(&part.flags, x, y);
       *rc_flag(&problem->flags, x0 + x, y0 + y) = flag & RC_KNOWN ? flag : RC_TARGET;
     }
   }
-  rc_release(context, mark);
-  double unused_x = 0, unused_y = 0, nearest = nearest_w(problem, &unused_x, &unused_y);
-  double x = (width - 1) / 2., y = (height - 1) / 2.;
+  return RECEDE_OK;
+}
+
+static recede_status lay(rc_context *context, const rc_views *exemplar, rc_problem *problem) {
+  rc_problem all;
+  RC_TRY(read_all(context, exemplar, &all));
+  return rc_lay(context, &all.image, &all.flags, problem);
+}
+
+recede_status rc_problem_of_synthesis(rc_context *context, const rc_views *exemplar,
+                                      const recede_plane *plane, bool laid, rc_problem *problem) {
+  int width = plane->width, height = plane->height;
+  double x = (width - 1) / 2., y = (height - 1) / 2., unused_x = 0, unused_y = 0;
+  *problem = (rc_problem){.plane = *plane, .synthesis = true};
+  if (laid) rc_lay_anchor(plane, &x, &y);
   if (recede_plane_w(plane, x, y) <= 0)
     return rc_fail(context, RECEDE_NO_PLANE,
-                   "The exemplar's centre lies beyond the horizon: give a slant below 90 degrees.");
+                   laid ? "The result shows nothing of the plane: all of it lies beyond the "
+                          "horizon. Give a smaller slant."
+                        : "The exemplar's centre lies beyond the horizon: give a slant below 90 "
+                          "degrees.");
+  RC_TRY(
+      rc_image_new(context, width, height, exemplar->image->channels < 3 ? 1 : 3, &problem->image));
+  RC_TRY(rc_mask_new(context, width, height, &problem->flags));
+  rc_block *mark = rc_mark(context);
+  RC_TRY(laid ? lay(context, exemplar, problem) : put_in_middle(context, exemplar, problem));
+  rc_release(context, mark);
+  double nearest = nearest_w(problem, &unused_x, &unused_y);
   problem->line = line_of(plane, 0, 0, x, y);
   apply_horizon(context, problem, LEAST_W_OF_TARGET * nearest / recede_plane_w(plane, x, y));
   if (context->report.refused_pixels)

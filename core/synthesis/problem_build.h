@@ -24,8 +24,9 @@ rc_box rc_problem_box(const rc_target_summary *summary, int width, int height);
 recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
                                  const recede_plane *plane, const rc_target_summary *summary,
                                  rc_problem *problem);
-/* A canvas of plane->width x plane->height, the exemplar in its middle, the rest to be filled. */
+/* A canvas of plane->width x plane->height, the exemplar in its middle, or laid onto the plane
+ * (lay.h); the rest is to be filled. RECEDE_NO_PLANE where that lies beyond the horizon. */
 recede_status rc_problem_of_synthesis(rc_context *context, const rc_views *exemplar,
-                                      const recede_plane *plane, rc_problem *problem);
+                                      const recede_plane *plane, bool laid, rc_problem *problem);
 
 #endif

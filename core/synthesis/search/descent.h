@@ -31,7 +31,7 @@ typedef struct rc_descent {
   rc_conditions conditions;                  /* of the finest level */
   rc_sides sides;                            /* of the finest level */
   bool on_rails, on_lattice, continue_lines; /* starts that kept to them fitted well enough */
-  int cut_level; /* the coarsest where seams are led by cuts; level_count: nowhere */
+  int cut_level;       /* the coarsest where seams are led by cuts; level_count: nowhere */
   uint8_t *rest;       /* of each pixel; out: 1 where it only continues what lies beside it */
   uint64_t rest_count; /* out */
 } rc_descent;

@@ -6,8 +6,8 @@
 #include "synthesis/search/level.h"
 
 /* Gives each target pixel without a copy that of a neighbour, as long as it leads to a source, else
- * one from the sources nearest to its size. *count: how many there were; marked, of each pixel of the
- * level: becomes 1 for them, NULL = not asked for. */
+ * one from the sources nearest to its size. *count: how many there were; marked, of each pixel of
+ * the level: becomes 1 for them, NULL = not asked for. */
 recede_status rc_continue_rest(rc_context *context, rc_level *level, uint64_t key, uint8_t *marked,
                                uint64_t *count);
 
