@@ -13,10 +13,11 @@ static const char *const result_labels[] = {N_("This layer"), N_("A new layer ab
 #define LAST_HOST_ORIENTATION RECEDE_ORIENTATION_FRONTAL
 
 static const rp_argument width_row = {
-    "width", N_("_Width"), N_("Width of the new image"), "px", RP_INT, 1, 262144, 1024, NULL, NULL};
+    "width", N_("_Width"), N_("Width of the new image"), "px", RP_INT, 1, 262144, 1024, NULL,
+    NULL,    FALSE};
 static const rp_argument height_row = {
-    "height", N_("Hei_ght"), N_("Height of the new image"), "px", RP_INT, 1, 262144, 768,
-    NULL,     NULL};
+    "height", N_("Hei_ght"), N_("Height of the new image"), "px", RP_INT, 1, 262144, 768, NULL,
+    NULL,     FALSE};
 static const rp_argument source_row = {
     "source",
     N_("Cop_y from"),
@@ -28,7 +29,8 @@ static const rp_argument source_row = {
     G_MAXINT32,
     -1,
     NULL,
-    NULL};
+    NULL,
+    FALSE};
 static const rp_argument result_row = {
     "result",
     N_("_Goes into"),
@@ -39,18 +41,20 @@ static const rp_argument result_row = {
     1,
     RP_IN_PLACE,
     result_nicks,
-    result_labels};
+    result_labels,
+    FALSE};
 
 static rp_argument tables[RP_PROCEDURES][RP_MAX_ARGUMENTS];
 static int counts[RP_PROCEDURES];
 
 static rp_argument from_row(const recede_param_info *row) {
-  rp_argument argument = {row->key,     row->label,        row->help,    row->unit,
-                          RP_DOUBLE,    row->minimum,      row->maximum, row->default_value,
-                          row->choices, row->choice_labels};
+  rp_argument argument = {row->key,     row->label,         row->help,    row->unit,
+                          RP_DOUBLE,    row->minimum,       row->maximum, row->default_value,
+                          row->choices, row->choice_labels, FALSE};
   if (row->type == RECEDE_PARAM_INT) argument.type = RP_INT;
   if (row->type == RECEDE_PARAM_CHOICE) argument.type = RP_CHOICE;
   if (strcmp(row->key, "orientation") == 0) argument.maximum = LAST_HOST_ORIENTATION;
+  argument.late = strcmp(row->key, "exemplar") == 0;
   return argument;
 }
 
@@ -68,6 +72,7 @@ static void build(rp_procedure procedure) {
   }
   for (; rows > 0; row++, rows--) {
     if (!(row->flags & RECEDE_PARAM_HOST)) continue;
+    if (row->flags & RECEDE_PARAM_SYNTHESIS && procedure != RP_SYNTHESIZE) continue;
     append(procedure, from_row(row));
     if (procedure == RP_FILL && strcmp(row->key, "surface") == 0) append(procedure, source_row);
   }

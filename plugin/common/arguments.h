@@ -21,6 +21,7 @@ typedef struct {
   double minimum, maximum, default_value; /* a choice: its index; a drawable: -1 is none */
   const char *const *choices;             /* maximum + 1 nicks */
   const char *const *choice_labels;       /* to be translated */
+  gboolean late; /* came after the order of 2.10's arguments was fixed: its scripts lack it */
 } rp_argument;
 
 #define RP_MAX_ARGUMENTS 16

@@ -46,6 +46,13 @@ static void register_icon(const char *procedure) {
   g_free(icon);
 }
 
+/* What a script must give. Late ones stand at the end, and have their defaults then. */
+static const rp_argument *in_scripts(rp_procedure procedure, int *count) {
+  const rp_argument *rows = rp_arguments(procedure, count);
+  while (*count > 0 && rows[*count - 1].late) --*count;
+  return rows;
+}
+
 static void install(rp_procedure procedure) {
   GimpParamDef definitions[FIXED_ARGUMENTS + RP_MAX_ARGUMENTS] = {
       {GIMP_PDB_INT32, "run-mode",
@@ -55,7 +62,7 @@ static void install(rp_procedure procedure) {
   };
   static const GimpParamDef new_image = {GIMP_PDB_IMAGE, "new-image", "The image that was made"};
   int count;
-  const rp_argument *rows = rp_arguments(procedure, &count);
+  const rp_argument *rows = in_scripts(procedure, &count);
   for (int i = 0; i < count; i++)
     definitions[FIXED_ARGUMENTS + i] =
         (GimpParamDef){type_of(&rows[i]), (gchar *)rows[i].key, description(&rows[i])};
@@ -98,7 +105,7 @@ static double number(const GimpParam *param) {
 static gboolean take_arguments(rp_settings *settings, GimpRunMode mode, int given,
                                const GimpParam *params) {
   int count;
-  rp_arguments(settings->procedure, &count);
+  in_scripts(settings->procedure, &count);
   if (mode != GIMP_RUN_NONINTERACTIVE) {
     rp_settings last;
     const char *name = rp_procedure_name(settings->procedure);
