@@ -136,6 +136,11 @@ void rp_settings_set(rp_settings *settings, const char *key, double value) {
   settings->values[index] = value;
 }
 
+gboolean rp_settings_lay(const rp_settings *settings) {
+  return settings->procedure == RP_SYNTHESIZE &&
+         (int)rp_settings_get(settings, "exemplar") == RECEDE_EXEMPLAR_FRONTAL;
+}
+
 static gboolean in_range(const rp_argument *row, double value, char **message) {
   char text[G_ASCII_DTOSTR_BUF_SIZE], low[G_ASCII_DTOSTR_BUF_SIZE], high[G_ASCII_DTOSTR_BUF_SIZE];
   if (value >= row->minimum && value <= row->maximum) return TRUE;

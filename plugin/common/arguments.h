@@ -45,6 +45,8 @@ void rp_settings_init(rp_settings *settings, rp_procedure procedure);
 int rp_settings_index(const rp_settings *settings, const char *key);
 double rp_settings_get(const rp_settings *settings, const char *key);
 void rp_settings_set(rp_settings *settings, const char *key, double value);
+/* Whether a texture seen from the front is to be laid onto the new image's plane. */
+gboolean rp_settings_lay(const rp_settings *settings);
 /* Checks every value and fills params. FALSE: *message says which is wrong (free it). */
 gboolean rp_settings_params(const rp_settings *settings, recede_params *params, char **message);
 

@@ -30,16 +30,21 @@ static gboolean find_params(const rp_draft *draft, recede_params *params) {
   return good;
 }
 
+static gboolean is_shown(const rp_draft *draft) {
+  return draft->scene->show == RP_SHOW_DRAFT || rp_scene_is_laid(draft->scene);
+}
+
 static gboolean start(gpointer data) {
   rp_draft *draft = data;
-  rp_proxy *proxy = &draft->scene->proxy;
-  rp_request request = {.run = RP_RUN_FILL, .threads = rp_host_threads()};
+  gboolean laid = rp_scene_is_laid(draft->scene);
+  rp_proxy *proxy = &draft->scene->proxy, *from = laid ? &draft->scene->texture : proxy;
+  rp_request request = {.run = laid ? RP_RUN_SYNTHESIZE : RP_RUN_FILL,
+                        .threads = rp_host_threads()};
   draft->timer = 0;
-  if (draft->scene->show != RP_SHOW_DRAFT || !find_params(draft, &request.params))
-    return G_SOURCE_REMOVE;
-  request.image = view_of(proxy, proxy->rgba, 4);
-  request.mask = view_of(proxy, proxy->mask, 1);
-  if (proxy->source) request.source = view_of(proxy, proxy->source, 1);
+  if (!is_shown(draft) || !find_params(draft, &request.params)) return G_SOURCE_REMOVE;
+  request.image = view_of(from, from->rgba, 4);
+  if (!laid) request.mask = view_of(from, from->mask, 1);
+  if (from->source) request.source = view_of(from, from->source, 1);
   rp_background_stop(&draft->run);
   if (!draft->pixels) draft->pixels = g_malloc((gsize)proxy->width * (gsize)proxy->height * 4);
   request.result = view_of(proxy, draft->pixels, 4);
@@ -58,7 +63,7 @@ void rp_draft_stop(rp_draft *draft) {
 void rp_draft_renew(rp_draft *draft) {
   rp_draft_stop(draft);
   rp_scene_set_draft(draft->scene, NULL);
-  if (draft->scene->show == RP_SHOW_DRAFT) draft->timer = g_timeout_add(AFTER_MS, start, draft);
+  if (is_shown(draft)) draft->timer = g_timeout_add(AFTER_MS, start, draft);
 }
 
 void rp_draft_clear(rp_draft *draft) {

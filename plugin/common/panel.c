@@ -12,7 +12,6 @@
 #include "procedure.h"
 #include "watch.h"
 
-#define PROXY_LONGEST_PX 720
 #define SHOWS 3
 /* The preview as the dialog opens, and as small as it can be made. */
 #define PREVIEW_WIDTH 600
@@ -44,6 +43,9 @@ static void explain(rp_panel *panel) {
   if (panel->scene.show == RP_SHOW_SCALE)
     say(panel, _("Blue: the texture gets smaller; orange: larger than in the selection; red: it "
                  "would have to be magnified; grey: beyond the horizon."));
+  else if (rp_scene_is_laid(&panel->scene) && panel->scene.draft.pixels)
+    say(panel, _("The new image, as a draft. Drag the horizon, its handles or the grid to tilt "
+                 "it."));
   else if (panel->scene.show == RP_SHOW_DRAFT && panel->scene.draft.pixels)
     say(panel, _("Draft: the real fill at the preview's size."));
   else if (rp_scene_is_beyond(&panel->scene))
@@ -96,7 +98,7 @@ static void show_plane(rp_panel *panel) {
 static void stop_estimate(rp_panel *panel) {
   if (panel->estimate.worker) explain(panel);
   rp_background_stop(&panel->estimate);
-  gtk_widget_set_sensitive(panel->estimate_button, TRUE);
+  gtk_widget_set_sensitive(panel->estimate_button, !rp_scene_is_laid(&panel->scene));
 }
 
 /* Whoever sets an angle by hand means it. */
@@ -134,6 +136,10 @@ static void on_estimate(gpointer user, const rp_request *request) {
 
 static void start_estimate(rp_panel *panel) {
   char *message = NULL;
+  if (rp_scene_is_laid(&panel->scene)) { /* it tells nothing of a plane */
+    take_angles(panel);
+    return;
+  }
   rp_request request = {.run = RP_RUN_ORIENT, .threads = rp_host_threads()};
   if (!rp_settings_params(panel->settings, &request.params, &message)) {
     g_free(message);
@@ -186,8 +192,32 @@ static void take_source(rp_panel *panel) {
   g_free(message);
 }
 
+static void take_scene(rp_panel *panel, rp_scene scene) {
+  scene.show = panel->scene.show;
+  rp_scene_clear(&panel->scene);
+  panel->scene = scene;
+}
+
+/* When what it depends on has changed: how the texture is seen, or the new image's size. */
+static void renew_scene(rp_panel *panel) {
+  rp_scene scene;
+  if (!rp_settings_lay(panel->settings) && !rp_scene_is_laid(&panel->scene)) return;
+  rp_draft_clear(&panel->draft);
+  stop_estimate(panel);
+  if (!rp_scene_new(panel->settings, panel->picture, &scene)) {
+    say(panel, rp_no_memory());
+    return;
+  }
+  take_scene(panel, scene);
+  explain(panel);
+}
+
 void rp_panel_changed(rp_panel *panel, const char *key) {
   if (panel->setting) return;
+  if (strcmp(key, "exemplar") == 0 || strcmp(key, "width") == 0 || strcmp(key, "height") == 0) {
+    renew_scene(panel);
+    renew_estimate(panel);
+  }
   if (strcmp(key, "slant") == 0 || strcmp(key, "tilt") == 0) take_angles(panel);
   if (strcmp(key, "source") == 0) take_source(panel);
   show_plane(panel);
@@ -196,16 +226,11 @@ void rp_panel_changed(rp_panel *panel, const char *key) {
 }
 
 void rp_panel_changed_all(rp_panel *panel) {
+  renew_scene(panel);
   explain(panel);
   if (panel->settings->procedure == RP_FILL) take_source(panel);
   show_plane(panel);
   renew_estimate(panel);
-}
-
-/* The scene is new. */
-static void show_picture(rp_panel *panel) {
-  if (panel->settings->procedure == RP_SYNTHESIZE) rp_scene_make_exemplar(&panel->scene);
-  rp_panel_changed_all(panel);
 }
 
 /* The user works on while the dialog is open: selects something else, moves or crops the layer. Why
@@ -217,7 +242,7 @@ static const char *read_anew(rp_panel *panel) {
   if (rp_is_as_read(panel->host, procedure, panel->picture)) return NULL;
   const char *text = rp_read(panel->host, procedure, &picture);
   if (text) return text;
-  if (!rp_scene_new(&picture, PROXY_LONGEST_PX, &scene)) {
+  if (!rp_scene_new(panel->settings, &picture, &scene)) {
     rp_picture_clear(&picture);
     return rp_no_memory();
   }
@@ -225,10 +250,8 @@ static const char *read_anew(rp_panel *panel) {
   stop_estimate(panel);
   rp_picture_clear(panel->picture);
   *panel->picture = picture;
-  scene.show = panel->scene.show;
-  rp_scene_clear(&panel->scene);
-  panel->scene = scene;
-  show_picture(panel);
+  take_scene(panel, scene);
+  rp_panel_changed_all(panel);
   return NULL;
 }
 
@@ -292,12 +315,14 @@ rp_panel *rp_panel_new(rp_host *host, rp_settings *settings, rp_picture *picture
   panel->estimate = (rp_background){.done = on_estimate, .user = panel};
   panel->draft =
       (rp_draft){.settings = settings, .scene = &panel->scene, .told = on_draft, .user = panel};
-  if (!rp_scene_new(picture, PROXY_LONGEST_PX, &panel->scene)) {
+  rp_scene scene;
+  if (!rp_scene_new(settings, picture, &scene)) {
     rp_panel_free(panel);
     return NULL;
   }
+  take_scene(panel, scene);
   build(panel);
-  show_picture(panel);
+  rp_panel_changed_all(panel);
   return panel;
 }
 

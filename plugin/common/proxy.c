@@ -68,17 +68,28 @@ static void shrink_mask(const recede_view *mask, const rp_proxy *proxy, float ab
       out[y * proxy->width + x] = mask->data && largest_in(mask, proxy, x, y) > above ? 255 : 0;
 }
 
-gboolean rp_proxy_new(const rp_picture *picture, int longest, rp_proxy *proxy) {
-  int width = picture->area.width, height = picture->area.height;
+static gboolean make_room(int width, int height, int longest, rp_proxy *proxy) {
   proxy->shrink = MAX(1., (double)MAX(width, height) / longest);
   proxy->width = MAX(1, (int)lround(width / proxy->shrink));
   proxy->height = MAX(1, (int)lround(height / proxy->shrink));
   gsize pixels = (gsize)proxy->width * (gsize)proxy->height;
-  proxy->rgba = g_try_malloc(pixels * 4);
-  proxy->mask = g_try_malloc(pixels);
+  proxy->rgba = g_try_malloc0(pixels * 4);
+  proxy->mask = g_try_malloc0(pixels);
   proxy->ends = g_try_new(int, 2 * (gsize)proxy->height);
   proxy->source = NULL;
-  if (!proxy->rgba || !proxy->mask || !proxy->ends) return rp_proxy_clear(proxy), FALSE;
+  if (proxy->rgba && proxy->mask && proxy->ends) return TRUE;
+  rp_proxy_clear(proxy);
+  return FALSE;
+}
+
+gboolean rp_proxy_new_blank(int width, int height, int longest, rp_proxy *proxy) {
+  if (!make_room(width, height, longest, proxy)) return FALSE;
+  rp_proxy_find_ends(proxy);
+  return TRUE;
+}
+
+gboolean rp_proxy_new(const rp_picture *picture, int longest, rp_proxy *proxy) {
+  if (!make_room(picture->area.width, picture->area.height, longest, proxy)) return FALSE;
   shrink_picture(picture, proxy);
   shrink_mask(&picture->mask.view, proxy, 0, proxy->mask);
   rp_proxy_find_ends(proxy);

@@ -15,6 +15,8 @@ typedef struct {
 
 /* No longer than longest px. FALSE: no memory. */
 gboolean rp_proxy_new(const rp_picture *picture, int longest, rp_proxy *proxy);
+/* Of a picture of that size with nothing in it yet: transparent, nothing to fill or to copy. */
+gboolean rp_proxy_new_blank(int width, int height, int longest, rp_proxy *proxy);
 /* Takes picture->source, or everything when it has none. */
 void rp_proxy_set_source(rp_proxy *proxy, const rp_picture *picture);
 /* To be called when mask or source has been changed by hand. */

@@ -7,23 +7,58 @@
 #include "grid.h"
 #include "surface.h"
 
+#define PROXY_LONGEST_PX 720
+
 static void clear_layer(rp_layer *layer) {
   g_clear_pointer(&layer->pixels, cairo_surface_destroy);
   g_clear_pointer(&layer->fitted, cairo_surface_destroy);
 }
 
-gboolean rp_scene_new(const rp_picture *picture, int longest, rp_scene *scene) {
-  memset(scene, 0, sizeof *scene);
-  if (!rp_proxy_new(picture, longest, &scene->proxy)) return FALSE;
+/* What was read as the mask is where the texture is copied from; nothing is filled. */
+static void make_exemplar(rp_proxy *proxy) {
+  proxy->source = proxy->mask;
+  proxy->mask = g_malloc0((gsize)proxy->width * (gsize)proxy->height);
+  rp_proxy_find_ends(proxy);
+}
+
+static gboolean new_laid(const rp_settings *settings, const rp_picture *picture, rp_scene *scene) {
+  if (!rp_proxy_new_blank((int)rp_settings_get(settings, "width"),
+                          (int)rp_settings_get(settings, "height"), PROXY_LONGEST_PX,
+                          &scene->proxy))
+    return FALSE;
+  int longest = MAX(picture->area.width, picture->area.height);
+  int shrunk = MAX(1, (int)lround(longest / scene->proxy.shrink));
+  if (!rp_proxy_new(picture, shrunk, &scene->texture)) {
+    rp_proxy_clear(&scene->proxy);
+    return FALSE;
+  }
+  if (picture->mask.view.data) make_exemplar(&scene->texture);
+  return TRUE;
+}
+
+static gboolean new_seen(const rp_settings *settings, const rp_picture *picture, rp_scene *scene) {
   rp_proxy *proxy = &scene->proxy;
+  if (!rp_proxy_new(picture, PROXY_LONGEST_PX, proxy)) return FALSE;
   rp_proxy_centre(proxy, &scene->centre_x, &scene->centre_y);
   scene->photo.pixels = rp_surface_of_pixels(proxy->rgba, proxy->width, proxy->height);
   scene->outline.pixels = rp_surface_of_outline(proxy);
+  if (settings->procedure == RP_SYNTHESIZE) make_exemplar(proxy);
+  return TRUE;
+}
+
+gboolean rp_scene_new(const rp_settings *settings, const rp_picture *picture, rp_scene *scene) {
+  memset(scene, 0, sizeof *scene);
+  gboolean laid = rp_settings_lay(settings);
+  if (!(laid ? new_laid : new_seen)(settings, picture, scene)) return FALSE;
+  if (laid) rp_proxy_centre(&scene->proxy, &scene->centre_x, &scene->centre_y);
   scene->shade_is_old = TRUE;
   return rp_scene_set_angles(scene, 0, 0, 50);
 }
 
+gboolean rp_scene_is_laid(const rp_scene *scene) { return scene->texture.rgba != NULL; }
+
 void rp_scene_clear(rp_scene *scene) {
+  rp_proxy_clear(&scene->texture);
   clear_layer(&scene->photo);
   clear_layer(&scene->outline);
   clear_layer(&scene->draft);
@@ -45,15 +80,6 @@ gboolean rp_scene_is_beyond(const rp_scene *scene) {
   double ends[4], quad[8];
   return !rp_grid_horizon(&scene->plane, ends) &&
          !recede_plane_quad(&scene->plane, scene->centre_x, scene->centre_y, 1, quad);
-}
-
-void rp_scene_make_exemplar(rp_scene *scene) {
-  rp_proxy *proxy = &scene->proxy;
-  g_free(proxy->source);
-  proxy->source = proxy->mask;
-  proxy->mask = g_malloc0((gsize)proxy->width * (gsize)proxy->height);
-  rp_proxy_find_ends(proxy);
-  scene->shade_is_old = TRUE;
 }
 
 /* Where photographers like to have it, and clear of the hole. */
@@ -245,7 +271,7 @@ static void draw_plane(rp_scene *scene, cairo_t *cairo, double zoom) {
 
 void rp_scene_draw(rp_scene *scene, cairo_t *cairo, int width, int height) {
   rp_fit fit = rp_scene_fit(scene, width, height);
-  gboolean draft = scene->show == RP_SHOW_DRAFT && scene->draft.pixels;
+  gboolean draft = (scene->show == RP_SHOW_DRAFT || rp_scene_is_laid(scene)) && scene->draft.pixels;
   cairo_set_source_rgb(cairo, .2, .2, .2);
   cairo_paint(cairo);
   cairo_translate(cairo, fit.x, fit.y);

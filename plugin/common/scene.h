@@ -27,6 +27,9 @@ typedef struct {
 
 typedef struct {
   rp_proxy proxy;
+  /* A texture seen from the front: the proxy is the new image's, blank, and the draft, which is
+   * always shown then, has this laid onto the plane. All 0: there is none. */
+  rp_proxy texture;
   double centre_x, centre_y; /* of the hole: the grid lies around it */
   recede_plane plane;        /* of the proxy's image */
   rp_show show;
@@ -39,14 +42,15 @@ typedef struct {
   double x, y, zoom; /* widget = (x, y) + zoom * proxy */
 } rp_fit;
 
-gboolean rp_scene_new(const rp_picture *picture, int longest, rp_scene *scene);
+/* Of a fill: the picture with its hole. Of a texture: the picture that it is, whose selected part
+ * is copied from; or, when it is to be laid, the new image. FALSE: no memory. */
+gboolean rp_scene_new(const rp_settings *settings, const rp_picture *picture, rp_scene *scene);
+gboolean rp_scene_is_laid(const rp_scene *scene);
 void rp_scene_clear(rp_scene *scene);
 /* FALSE, and the scene stays as it is: these angles make no plane. */
 gboolean rp_scene_set_angles(rp_scene *scene, double slant_deg, double tilt_deg, double fov_deg);
 /* Nothing of the plane is in sight: the picture lies beyond the horizon. */
 gboolean rp_scene_is_beyond(const rp_scene *scene);
-/* What was read as the mask is the exemplar: it is copied from, nothing is filled. */
-void rp_scene_make_exemplar(rp_scene *scene);
 /* Angles that put a horizon in sight above the hole, for the user to drag from there; FALSE: one is
  * in sight already. */
 gboolean rp_scene_first_guess(const rp_scene *scene, double *slant_deg, double *tilt_deg);

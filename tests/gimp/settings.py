@@ -64,6 +64,29 @@ def check_dialog(dialog):
     dialog.window.screenshot("texture")
 
 
+def waits_for_draft(dialog):
+    """What the plane has on it then: the grid's lines alone leave most of the picture one grey."""
+    dialog.says("Making a draft", seconds=5)
+    shown = dialog.says("The new image, as a draft", seconds=30)
+    dialog.window.screenshot("texture-laid")
+    grey = (np.ptp(dialog.picture(), axis=2) == 0).mean()
+    dialog.tap.case(shown and grey < .6, "the draft is shown", f"{dialog.status()} {grey:.2f}")
+
+
+def check_laid(dialog):
+    """A texture seen from the front: the preview is the new image, onto which it is laid."""
+    dialog.set("Width", 800)
+    dialog.set("Height", 500)
+    dialog.changes(lambda: dialog.choose("From the front"), "a texture from the front is laid", .1)
+    waits_for_draft(dialog)
+    estimate = dialog.window.button(dialog.root, "Estimate")
+    dialog.tap.case(not estimate.getState().contains(pyatspi.STATE_SENSITIVE),
+                    "it has no orientation to be read")
+    dialog.changes(lambda: dialog.set("Slant", 70), "Slant lays it anew", .05)
+    waits_for_draft(dialog)
+    dialog.set("Slant", 60)
+
+
 def check_run(dialog, server, host):
     before = server.save(host.folder / "before.xcf")
     count = images(server, host)
@@ -146,6 +169,7 @@ def main():
         dialog.open(frame)
         dialog.says("confidence", seconds=30)
         check_dialog(dialog)
+        check_laid(dialog)
         check_run(dialog, server, host)
         dialog.open(frame)
         settles_at(dialog, (300, 200, 60), "the last values are back")
