@@ -19,7 +19,7 @@ DEFAULTS = {"width": 1024, "height": 768, "orientation": "auto", "slant": 45, "t
             "result": "in-place"}
 CHOICES = {"orientation": ["auto", "angles", "frontal"], "surface": ["flat", "raised", "auto"],
            "method": ["plane", "paper", "kwatra"], "quality": ["draft", "normal", "best"],
-           "result": ["in-place", "new-layer"]}
+           "result": ["in-place", "new-layer"], "exemplar": ["receding", "frontal"]}
 
 PRELUDE = {
     "2": """
@@ -134,7 +134,7 @@ class Host:
             return self.positional(procedure, keys, image, layer, values)
         words = [f"({procedure} #:run-mode RUN-NONINTERACTIVE #:image {image}"
                  f" #:drawables (vector {layer})"]
-        for key in keys:
+        for key in values:
             if values[key] is not None:
                 quoted = f'"{values[key]}"' if key in CHOICES else values[key]
                 words.append(f"#:{key} {quoted}")

@@ -238,6 +238,24 @@ def check_synthesis(host, tap, folder):
                  f"{new.width}x{new.height}, mean {values.mean()} for {opaque.mean()}")
 
 
+def check_laid(host, tap, folder):
+    """A texture from the front is laid onto the plane. 2.10's scripts cannot say so."""
+    made = {}
+    for seen in ("receding", "frontal"):
+        call = host.synthesize(width=120, height=90, orientation="angles", slant=60, exemplar=seen)
+        output = host.run(f'(define i (t-load "{folder}/picture-0.png"))',
+                          "(define d (t-layer i))", f"(define n (car {call}))",
+                          f'(t-save n "{folder}/{seen}.xcf")')
+        if not host.done:
+            tap.case(False, f"synthesize {seen}", output)
+            return
+        made[seen] = xcf.Image(folder / f"{seen}.xcf").layers[0].values
+    apart = (np.abs(made["receding"] - made["frontal"]).max(-1) > .02).mean()
+    means = made["receding"].mean(), made["frontal"].mean()
+    tap.case(apart > .5 and abs(means[0] / means[1] - 1) < .2, "a texture from the front",
+             f"{apart} {means}")
+
+
 def main():
     name, plugin, command = sys.argv[1:4]
     tap = Tap()
@@ -246,6 +264,8 @@ def main():
         check_new_layer(host, tap, host.folder)
         check_mask(host, tap, host.folder)
         check_synthesis(host, tap, host.folder)
+        if name == "3":
+            check_laid(host, tap, host.folder)
         check_same_as_command(host, tap, host.folder, command and Path(command).resolve())
     tap.plan()
 
