@@ -76,7 +76,7 @@ static const recede_param_info table[] = {
            1, qualities, quality_labels, COMMON),
     INT("seed", seed, N_("See_d"), N_("Another seed gives another fill"), 0, 2147483647, 0, COMMON),
     CHOICE(
-        "exemplar", exemplar, N_("Texture is see_n"),
+        "exemplar", exemplar, N_("Te_xture is seen"),
         N_("Whether the exemplar recedes as the result does, or is seen from the front and to be "
            "laid onto the plane"),
         0, exemplars, exemplar_labels, COMMON | RECEDE_PARAM_SYNTHESIS),

@@ -76,19 +76,25 @@ static int farthest(const tally *t) {
   return bin + 1;
 }
 
+static int nearest(const tally *t) {
+  int bin = BINS - 1;
+  while (bin > 0 && !t->target[bin]) bin--;
+  return bin;
+}
+
 /* Of the target's bins from first on: what is looked at to fill them. */
 static rc_box box_of_step(const steps *s, int first) {
   const rc_mask *flags = &s->flags;
   rc_line line = s->problem->line;
   rc_box box = {flags->width, flags->height, 0, 0};
-  float nearest = 0;
+  float most = 0;
   for (int y = 0; y < flags->height; y++)
     for (int x = 0; x < flags->width; x++)
       if (*rc_flag(flags, x, y) & RC_TARGET && bin_of(&line, x, y) >= first)
-        nearest = (float)rc_w(&line, x, y) > nearest ? (float)rc_w(&line, x, y) : nearest;
+        most = (float)rc_w(&line, x, y) > most ? (float)rc_w(&line, x, y) : most;
   for (int y = 0; y < flags->height; y++)
     for (int x = 0; x < flags->width; x++) {
-      if (!*rc_flag(flags, x, y) || (float)rc_w(&line, x, y) > LOOKED_AT * nearest) continue;
+      if (!*rc_flag(flags, x, y) || (float)rc_w(&line, x, y) > LOOKED_AT * most) continue;
       if (x < box.x0) box.x0 = x;
       if (x >= box.x1) box.x1 = x + 1;
       if (y < box.y0) box.y0 = y;
@@ -176,8 +182,8 @@ static recede_status fill_rest(rc_context *context, steps *s) {
   while (s->done < s->targets) {
     count(line, &s->flags, &t);
     first = farthest(&t);
-    bool last = (double)sum(t.target, 0, first) < LAST_PART * (double)s->targets;
-    if (last || !sum(t.target, first, BINS)) first = 0;
+    if (!sum(t.target, first, BINS)) first = nearest(&t) - REACH_BINS; /* as far as one can */
+    if ((double)sum(t.target, 0, first) < LAST_PART * (double)s->targets) first = 0;
     rc_span(context, .5 + .5 * (double)s->done / (double)s->targets);
     RC_TRY(fill_step(context, s, first));
   }
