@@ -250,6 +250,9 @@ static void boards_run_out_of_the_picture(void) {
     boards_made free = fill_boards(boards, slant_deg, right, off);
     g_assert_cmpfloat(on_rails.joints, >, .95);
     g_assert_cmpfloat(on_rails.joints, >, free.joints + .15);
+    /* Of a coarsest level so large that only one start is worth its time, too. */
+    on_rails = fill_boards(boards, slant_deg, right, "quality=draft engine-starts=1");
+    g_assert_cmpfloat(on_rails.joints, >, .95);
   }
 }
 

@@ -232,7 +232,7 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   int trials = plain + with_lines, whole = e->params->engine_whole ? with_lines / 2 : 0;
   starts by_chance = {0, plain, plain, NULL, 0};
   starts along_lines = {plain, trials - whole, trials, NULL, 0};
-  if (trials == 1 && !in_lattice) {
+  if (trials == 1 && !in_lattice && !on_rails) {
     rc_pace p = {0, iterations};
     RC_TRY(start_once(context, e, &by_chance, 0, level));
     return rc_iterate(context, e, exponent, 0, 0, iterations, &p, level, scratch);
