@@ -16,4 +16,8 @@ recede_status rc_trusted_orientation(rc_context *context, const recede_params *p
                                      const rc_views *views, int width, int height,
                                      const double on[2], recede_orientation *orientation);
 
+/* Upper bound of the memory that reading it from a picture of that size takes, bytes; 0 where the
+ * parameters give it. */
+uint64_t rc_orientation_bytes(const recede_params *params, int width, int height, int threads);
+
 #endif

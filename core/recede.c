@@ -48,6 +48,7 @@ static recede_status set_view(recede_job *job, recede_view *held, const recede_v
   job->context.message[0] = '\0';
   RC_TRY(rc_view_check(&job->context, view, name, channels));
   *held = *view;
+  job->context.message[0] = '\0';
   return RECEDE_OK;
 }
 
@@ -60,12 +61,18 @@ recede_status recede_job_set_mask(recede_job *job, const recede_view *mask) {
 recede_status recede_job_set_source(recede_job *job, const recede_view *source) {
   if (source) return set_view(job, &job->source, source, "Source mask", 1);
   job->source.data = NULL;
+  job->context.message[0] = '\0';
   return RECEDE_OK;
 }
 
 recede_status recede_job_set_params(recede_job *job, const recede_params *params) {
   recede_params checked;
   char text[256], message[400];
+  if (params->struct_size != sizeof *params)
+    return rc_fail(&job->context, RECEDE_ARGUMENT,
+                   "Parameters: their struct_size is %zu, not %zu. Make them with "
+                   "recede_params_init() of the library that is used.",
+                   params->struct_size, sizeof *params);
   size_t rows;
   const recede_param_info *table = recede_param_table(&rows);
   recede_params_init(&checked);
@@ -75,6 +82,7 @@ recede_status recede_job_set_params(recede_job *job, const recede_params *params
       return rc_fail(&job->context, RECEDE_ARGUMENT, "%s.", message);
   }
   job->params = *params;
+  job->context.message[0] = '\0';
   return RECEDE_OK;
 }
 
@@ -103,6 +111,13 @@ static recede_status end(recede_job *job, recede_status status) {
   atomic_store(&context->cancelled, 0);
   if (status == RECEDE_OK) context->message[0] = '\0';
   return status;
+}
+
+/* Of calls that write no pixels, and may be over before they ask. */
+static recede_status end_if_not_cancelled(recede_job *job, recede_status status) {
+  if (status == RECEDE_OK && rc_cancelled(&job->context))
+    status = rc_fail(&job->context, RECEDE_CANCELLED, "Cancelled.");
+  return end(job, status);
 }
 
 static recede_status check_same_size(recede_job *job, const recede_view *view, const char *name) {
@@ -136,9 +151,12 @@ static recede_status orient(recede_job *job, recede_orientation *orientation) {
 }
 
 recede_status recede_job_orient(recede_job *job, recede_orientation *orientation) {
+  recede_orientation found;
   recede_status status = begin(job);
-  if (status == RECEDE_OK) status = orient(job, orientation);
-  return end(job, status);
+  if (status == RECEDE_OK) status = orient(job, &found);
+  status = end_if_not_cancelled(job, status);
+  if (status == RECEDE_OK) *orientation = found;
+  return status;
 }
 
 /* ------------------------------------------------------------------------------------ fill -- */
@@ -147,19 +165,29 @@ static uint64_t pixels_in(rc_box box) {
   return (uint64_t)(box.x1 - box.x0) * (uint64_t)(box.y1 - box.y0);
 }
 
-/* pixels: looked at; columns and rows: of the target's bounding box. */
-static uint64_t bytes_of_fill(const recede_job *job, uint64_t pixels, uint64_t columns,
-                              uint64_t rows) {
+/* pixels: looked at, in rows of so many; columns and rows: of the target's bounding box. */
+static uint64_t bytes_of_fill(const recede_job *job, uint64_t pixels, uint64_t row,
+                              uint64_t columns, uint64_t rows) {
   int colours = job->image.channels < 3 ? 1 : 3;
-  uint64_t problem = pixels * (uint64_t)(colours * 4 + 1) + ((uint64_t)4 << 20);
-  return problem + (job->params.method == RECEDE_METHOD_PLANE
-                        ? rc_plane_bytes(pixels, columns, rows, colours, &job->params)
-                        : pixels * (uint64_t)(colours * 4) +
-                              rc_paper_bytes(pixels, columns * rows, colours, &job->params));
+  uint64_t reading = (uint64_t)job->context.threads * row * (uint64_t)(job->image.channels + 1) * 4;
+  uint64_t problem = pixels * (uint64_t)(colours * 4 + 1) + ((uint64_t)4 << 20) + reading;
+  uint64_t method =
+      job->params.method == RECEDE_METHOD_PLANE
+          ? rc_plane_bytes(pixels, columns, rows, colours, &job->params)
+          : pixels * (uint64_t)(colours * 4) + rc_paper_bytes(pixels, colours, &job->params);
+  uint64_t before =
+      rc_orientation_bytes(&job->params, job->image.width, job->image.height, job->context.threads);
+  return problem + method > before ? problem + method : before;
 }
 
-static recede_status refuse_too_large(rc_context *context, uint64_t bytes) {
+/* Of a pixel the core keeps its index as an int32_t. */
+static recede_status refuse_too_large(rc_context *context, uint64_t bytes, uint64_t pixels) {
   context->report.estimated_bytes = bytes;
+  if (pixels > INT32_MAX)
+    return rc_fail(context, RECEDE_TOO_LARGE,
+                   "This fill would look at %llu million pixels, the limit is %d million. Fill a "
+                   "smaller region or scale the picture down.",
+                   (unsigned long long)(pixels / 1000000), INT32_MAX / 1000000);
   if (bytes <= context->limit_bytes) return RECEDE_OK;
   return rc_fail(context, RECEDE_TOO_LARGE,
                  "This fill needs up to %llu MiB, the limit is %llu MiB. Raise the limit, fill a "
@@ -175,9 +203,10 @@ static recede_status plan_fill(recede_job *job, rc_target_summary *summary) {
   RC_TRY(check_same_size(job, &job->source, "source mask"));
   RC_TRY(rc_summarize_target(&job->context, &job->mask, summary));
   rc_box box = rc_problem_box(summary, job->image.width, job->image.height), target = summary->box;
-  return refuse_too_large(&job->context,
-                          bytes_of_fill(job, pixels_in(box), (uint64_t)(target.x1 - target.x0),
-                                        (uint64_t)(target.y1 - target.y0)));
+  uint64_t bytes =
+      bytes_of_fill(job, pixels_in(box), (uint64_t)(box.x1 - box.x0),
+                    (uint64_t)(target.x1 - target.x0), (uint64_t)(target.y1 - target.y0));
+  return refuse_too_large(&job->context, bytes, pixels_in(box));
 }
 
 recede_status recede_job_estimate_fill(recede_job *job, uint64_t *bytes, double *seconds) {
@@ -188,7 +217,7 @@ recede_status recede_job_estimate_fill(recede_job *job, uint64_t *bytes, double 
     *bytes = job->context.report.estimated_bytes;
     *seconds = 1e-5 * (double)summary.pixels; /* measured: about 10 us a target pixel */
   }
-  return end(job, status);
+  return end_if_not_cancelled(job, status);
 }
 
 static recede_status check_result(recede_job *job, const recede_view *result, bool same_size) {
@@ -262,8 +291,10 @@ static recede_status plan_synthesis(recede_job *job, int width, int height) {
   if (job->params.exemplar == RECEDE_EXEMPLAR_FRONTAL) RC_TRY(check_frontal(job));
   uint64_t pixels = (uint64_t)width * (uint64_t)height;
   uint64_t exemplar = (uint64_t)job->image.width * (uint64_t)job->image.height;
-  return refuse_too_large(&job->context,
-                          bytes_of_fill(job, pixels + exemplar, (uint64_t)width, (uint64_t)height));
+  int row = job->image.width > width ? job->image.width : width;
+  uint64_t bytes =
+      bytes_of_fill(job, pixels + exemplar, (uint64_t)row, (uint64_t)width, (uint64_t)height);
+  return refuse_too_large(&job->context, bytes, pixels + exemplar);
 }
 
 recede_status recede_job_estimate_synthesize(recede_job *job, int width, int height,
@@ -274,7 +305,7 @@ recede_status recede_job_estimate_synthesize(recede_job *job, int width, int hei
     *bytes = job->context.report.estimated_bytes;
     *seconds = 1e-5 * (double)width * height;
   }
-  return end(job, status);
+  return end_if_not_cancelled(job, status);
 }
 
 static rc_views exemplar_of(const recede_job *job) {

@@ -182,10 +182,10 @@ typedef struct recede_params {
   int engine_near, engine_tone, engine_alike, engine_periods, engine_lattice, engine_lines,
       engine_rails, engine_gauge, engine_spots, engine_kin, engine_focus, engine_light,
       engine_boundary, engine_regions, engine_tracks, engine_texture, engine_whole, engine_cuts,
-      engine_coherence, engine_usage, engine_confidence, engine_composition, engine_join,
-      engine_detail, engine_spline; /* stages of the plane engine, 1 = on */
-  int engine_starts;                /* trials of the coarsest level; 0: by quality */
-  int engine_iterations;            /* EM iterations at the coarsest level; 0: by quality */
+      engine_coherence, engine_steps, engine_usage, engine_confidence, engine_composition,
+      engine_join, engine_detail, engine_spline; /* stages of the plane engine, 1 = on */
+  int engine_starts;                             /* trials of the coarsest level; 0: by quality */
+  int engine_iterations; /* EM iterations at the coarsest level; 0: by quality */
 } recede_params;
 
 typedef enum recede_param_type {
@@ -257,7 +257,7 @@ typedef struct recede_orientation {
 typedef struct recede_report {
   recede_orientation orientation;
   recede_method method;
-  recede_surface surface; /* the one used: FLAT or RAISED */
+  recede_surface surface; /* the one used: FLAT or RAISED; methods paper and kwatra: as asked for */
   int64_t seed;
   int threads;
   int stage_count;
@@ -295,8 +295,9 @@ RECEDE_API recede_status recede_job_set_params(recede_job *job, const recede_par
  * the source, which is taken to lie on the plane, all of it, if it has less than 70 % of them; then
  * the others are asked, too, unless it is sure, and believed where they are far surer). */
 RECEDE_API recede_status recede_job_orient(recede_job *job, recede_orientation *orientation);
-/* Memory in bytes and time in seconds that fill (or synthesize, to a width and height) would take
- * at the most; touches no pixel. */
+/* What fill (or synthesize, to a width and height) would take: memory in bytes, at the most; time
+ * in seconds, roughly, by method plane at normal quality. Of the pixels only the mask's are read.
+ * Both are told on RECEDE_TOO_LARGE, too. */
 RECEDE_API recede_status recede_job_estimate_fill(recede_job *job, uint64_t *bytes,
                                                   double *seconds);
 RECEDE_API recede_status recede_job_estimate_synthesize(recede_job *job, int width, int height,
@@ -313,8 +314,8 @@ RECEDE_API recede_status recede_job_synthesize(recede_job *job, const recede_vie
 RECEDE_API const recede_report *recede_job_report(const recede_job *job);
 /* Why the last call failed and what to do, English, one line; "" after RECEDE_OK. */
 RECEDE_API const char *recede_job_message(const recede_job *job);
-/* Makes a running call return RECEDE_CANCELLED soon. Safe from other threads and signal handlers.
- */
+/* Makes a running call return RECEDE_CANCELLED soon, or the next one where none is running. Safe
+ * from other threads and signal handlers. */
 RECEDE_API void recede_job_cancel(recede_job *job);
 RECEDE_API void recede_job_free(recede_job **job);
 

@@ -18,7 +18,6 @@ static double cardinal(double v) {
 }
 
 void rc_sampler_init(rc_sampler *sampler, bool bilinear) {
-  sampler->bilinear = bilinear;
   for (int s = 0; s < RC_SPLINE_STEPS; s++) {
     double sum = 0, t = (double)s / RC_SPLINE_STEPS, taps[RC_SPLINE_TAPS];
     for (int i = 0; i < RC_SPLINE_TAPS; i++) {

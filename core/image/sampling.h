@@ -9,10 +9,10 @@
 #define RC_SPLINE_STEPS 512 /* of a px */
 
 typedef struct rc_sampler {
-  bool bilinear; /* for the ablation only */
   float taps[RC_SPLINE_STEPS][RC_SPLINE_TAPS];
 } rc_sampler;
 
+/* bilinear: for the ablation only. */
 void rc_sampler_init(rc_sampler *sampler, bool bilinear);
 /* Value at (x, y) px; beyond the border the last pixel is repeated. At whole pixels exactly the
  * pixel. */

@@ -29,8 +29,10 @@
 
 /* The coarsest hole is at least this far across: one level too many breaks regular patterns. */
 #define COARSEST_HOLE_PX 18
-/* A coarser level has too few places for a patch that lies wholly in source. */
+/* A coarser level, or one with less source across, has too few places for a patch that lies wholly
+ * in source. */
 #define LEAST_LEVEL_PX 48
+#define COARSEST_SOURCE_PX 24
 /* The surface is judged on a picture of about this width. */
 #define SURFACE_LONGEST_PX 1100
 /* Raised when it is likely: most flat textures measure .4 .. 1.2 (their contrast within a texel
@@ -67,14 +69,14 @@ static rc_band own_scales(const rc_problem *problem) {
   return band;
 }
 
-/* Twice the largest distance of a target pixel from its border. */
-static recede_status hole_width(rc_context *context, const rc_mask *flags, int *width) {
+/* Twice the largest distance of such a pixel from one that is not, which is known up to 255 px. */
+static recede_status widest(rc_context *context, const rc_mask *flags, uint8_t wanted, int *width) {
   uint8_t *depth;
   int most = 0;
   size_t count = (size_t)flags->width * (size_t)flags->height;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, count, &depth));
-  rc_distance_inside(flags->data, RC_TARGET, flags->width, flags->height, false, depth);
+  rc_distance_inside(flags->data, wanted, flags->width, flags->height, false, depth);
   for (size_t i = 0; i < count; i++) most = depth[i] > most ? depth[i] : most;
   *width = 2 * most;
   rc_release(context, mark);
@@ -85,7 +87,7 @@ static recede_status keep_near(rc_context *context, const rc_problem *problem,
                                const rc_band *band) {
   int width;
   if (rc_all_is_near(&problem->flags, &problem->target)) return RECEDE_OK;
-  RC_TRY(hole_width(context, &problem->flags, &width));
+  RC_TRY(widest(context, &problem->flags, RC_TARGET, &width));
   return rc_keep_near(context, &problem->flags, &problem->target, band, width);
 }
 
@@ -100,8 +102,10 @@ static recede_status build_pyramid(rc_context *context, const rc_problem *proble
     const rc_mask *flags = &e->flags[last];
     int shorter = flags->width < flags->height ? flags->width : flags->height;
     if (shorter / 2 < LEAST_LEVEL_PX) return RECEDE_OK;
-    RC_TRY(hole_width(context, &e->flags[last], &width));
+    RC_TRY(widest(context, flags, RC_TARGET, &width));
     if (width / 2 < COARSEST_HOLE_PX || e->level_count == RC_MAX_LEVELS) return RECEDE_OK;
+    RC_TRY(widest(context, flags, RC_SOURCE, &width));
+    if (width / 2 < COARSEST_SOURCE_PX) return RECEDE_OK;
     RC_TRY(rc_half(context, &e->images[last], &e->flags[last], &e->images[last + 1],
                    &e->flags[last + 1]));
     e->level_count++;

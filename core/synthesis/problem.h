@@ -33,10 +33,9 @@ recede_status rc_synthesize_paper(rc_context *context, const rc_image *exemplar,
                                   const recede_params *params, rc_image *result);
 
 /* Upper bounds of memory beyond the problem itself (and the result), bytes: for so many pixels
- * looked at, and the target's bounding box. */
+ * looked at, and (method plane) the target's bounding box. */
 uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int channels,
                         const recede_params *params);
-uint64_t rc_paper_bytes(uint64_t exemplar_pixels, uint64_t target, int channels,
-                        const recede_params *params);
+uint64_t rc_paper_bytes(uint64_t exemplar_pixels, int channels, const recede_params *params);
 
 #endif

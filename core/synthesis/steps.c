@@ -217,7 +217,7 @@ recede_status rc_fill_in_steps(rc_context *context, const rc_problem *problem,
   rc_release(context, mark);
   count(&problem->line, &problem->flags, &t);
   s.targets = sum(t.target, 0, BINS);
-  if ((double)s.shortfall.continued >= LEAST_REST * (double)s.targets)
+  if (params->engine_steps && (double)s.shortfall.continued >= LEAST_REST * (double)s.targets)
     RC_TRY(fill_rest(context, &s));
   rc_span(context, 0);
   tell(context, &s.shortfall);

@@ -306,14 +306,16 @@ static void every_allocation_fails(void) {
 }
 
 /* The estimate before the run is the run's own, and bounds its peak. */
-static void check_memory(int width, int height, area masked, int channels, const char *quality) {
+static void check_memory(int width, int height, area masked, int channels, const char *settings,
+                         int threads) {
   picture image = picture_new(width, height, channels, RECEDE_U8);
   for (gsize i = 0; i < picture_bytes(&image); i++)
     image.pixels[i] = (guint8)(255 * noise_at((int)i / 9, 0, 1));
   task t = task_new(image, "slant=40 surface=auto engine-iterations=1");
   guint64 bytes;
   double seconds;
-  task_set(&t, quality);
+  task_set(&t, settings);
+  t.host.threads = threads;
   task_hole(&t, masked);
   recede_job *job = recede_job_new(&t.host);
   recede_job_set_image(job, &t.image.view);
@@ -323,7 +325,7 @@ static void check_memory(int width, int height, area masked, int channels, const
   recede_job_free(&job);
   task_succeeds(&t); /* peak <= estimate */
   g_test_message("%d x %d x %d, hole %d x %d, %s: %.1f of %.1f MB", width, height, channels,
-                 masked.x1 - masked.x0, masked.y1 - masked.y0, quality,
+                 masked.x1 - masked.x0, masked.y1 - masked.y0, settings,
                  (double)t.report.peak_bytes / 1e6, (double)bytes / 1e6);
   g_assert_cmpuint(t.report.estimated_bytes, ==, bytes);
   task_clear(&t);
@@ -333,18 +335,22 @@ static void peak_within_the_estimate(void) {
   static const char *const qualities[] = {"quality=draft", "quality=normal", "quality=best"};
   for (int i = 0; i < 6; i++) {
     int channels = i & 1 ? 3 : 1;
-    check_memory(64, 64, (area){20, 20, 44, 44}, channels, qualities[i / 2]);
-    check_memory(64, 64, (area){2, 2, 62, 58}, channels, qualities[i / 2]);
-    check_memory(300, 200, (area){100, 80, 130, 120}, channels, qualities[i / 2]);
+    check_memory(64, 64, (area){20, 20, 44, 44}, channels, qualities[i / 2], 1);
+    check_memory(64, 64, (area){2, 2, 62, 58}, channels, qualities[i / 2], 1);
+    check_memory(300, 200, (area){100, 80, 130, 120}, channels, qualities[i / 2], 1);
   }
-  check_memory(300, 200, (area){10, 20, 290, 180}, 3, qualities[1]);
-  check_memory(300, 200, (area){10, 20, 290, 180}, 3, qualities[2]);
-  check_memory(1400, 120, (area){50, 40, 1350, 82}, 3, qualities[2]);
-  check_memory(1000, 700, (area){500, 400, 540, 430}, 3, qualities[0]);
-  check_memory(1000, 700, (area){50, 300, 950, 330}, 1, qualities[0]);
-  check_memory(1000, 700, (area){300, 200, 700, 500}, 3, qualities[0]);
-  check_memory(60000, 1, (area){300, 0, 59700, 1}, 3, qualities[0]);
-  check_memory(1, 60000, (area){0, 300, 1, 59700}, 3, qualities[0]);
+  check_memory(300, 200, (area){10, 20, 290, 180}, 3, qualities[1], 1);
+  check_memory(300, 200, (area){10, 20, 290, 180}, 3, qualities[2], 1);
+  check_memory(1400, 120, (area){50, 40, 1350, 82}, 3, qualities[2], 1);
+  check_memory(1000, 700, (area){500, 400, 540, 430}, 3, qualities[0], 1);
+  check_memory(1000, 700, (area){50, 300, 950, 330}, 1, qualities[0], 1);
+  check_memory(1000, 700, (area){300, 200, 700, 500}, 3, qualities[0], 1);
+  check_memory(60000, 1, (area){300, 0, 59700, 1}, 3, qualities[0], 1);
+  check_memory(1, 60000, (area){0, 300, 1, 59700}, 3, qualities[0], 1);
+  check_memory(60000, 3, (area){300, 1, 59700, 2}, 3, qualities[0], 64);
+  /* What the orientation is read from is larger than what a small hole is filled from. */
+  check_memory(1000, 1000, (area){985, 985, 995, 995}, 3, "quality=draft orientation=auto", 1);
+  check_memory(3000, 900, (area){2985, 885, 2995, 895}, 3, "quality=draft orientation=auto", 64);
 }
 
 /* One mebibyte less than the estimate is refused, and both numbers are said. */

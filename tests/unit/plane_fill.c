@@ -266,6 +266,29 @@ static void texture_reaches_the_horizon(void) {
   task_clear(&t);
 }
 
+/* Over before they could ask; and the next call is not cancelled by what was meant for them. */
+static void short_calls_can_be_cancelled(void) {
+  task t = task_new(picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, grains, 6, 40, 0), "slant=40");
+  recede_job *job = recede_job_new(NULL);
+  recede_orientation found = {.slant_deg = -1};
+  uint64_t bytes;
+  double seconds;
+  task_hole(&t, (area){40, 40, 70, 60});
+  recede_job_set_image(job, &t.image.view);
+  recede_job_set_mask(job, &t.mask.view);
+  recede_job_set_params(job, &t.params);
+  recede_job_cancel(job);
+  g_assert_cmpint(recede_job_estimate_fill(job, &bytes, &seconds), ==, RECEDE_CANCELLED);
+  g_assert_cmpint(recede_job_estimate_fill(job, &bytes, &seconds), ==, RECEDE_OK);
+  recede_job_cancel(job);
+  g_assert_cmpint(recede_job_orient(job, &found), ==, RECEDE_CANCELLED);
+  g_assert_cmpfloat(found.slant_deg, ==, -1);
+  g_assert_cmpint(recede_job_orient(job, &found), ==, RECEDE_OK);
+  g_assert_cmpfloat(fabs(found.slant_deg - 40), <, 1e-6);
+  recede_job_free(&job);
+  task_clear(&t);
+}
+
 static recede_surface surface_of(picture image, double slant) {
   task t = task_new(image, "surface=auto quality=draft engine-iterations=1");
   t.params.slant_deg = slant;
@@ -294,6 +317,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/plane/synthesis", synthesis_keeps_the_exemplar);
   g_test_add_func("/plane/cut", synthesis_may_cut);
   g_test_add_func("/plane/far", texture_reaches_the_horizon);
+  g_test_add_func("/plane/cancel", short_calls_can_be_cancelled);
   g_test_add_func("/plane/surface", surface_is_told);
   return g_test_run();
 }

@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "image/pyramid.h"
-#include "synthesis/paper/scale_channel.h"
 #include "synthesis/paper/search.h"
 #include "synthesis/paper/update.h"
 

@@ -104,14 +104,12 @@ static uint64_t bytes_of_tree(uint64_t pixels, const rc_paper_settings *settings
 }
 
 /* exemplar_pixels: of both sides, and as many again in the coarser levels. */
-uint64_t rc_paper_bytes(uint64_t exemplar_pixels, uint64_t target, int channels,
-                        const recede_params *params) {
+uint64_t rc_paper_bytes(uint64_t exemplar_pixels, int channels, const recede_params *params) {
   rc_paper_settings settings = rc_paper_settings_of(params);
   uint64_t narrow = (uint64_t)settings.widths[settings.width_count - 1];
   uint64_t step = narrow >= 4 ? narrow / 4 : 1, wide = (uint64_t)channels + settings.scale_channel;
   uint64_t pyramid = 4 * (uint64_t)channels + 1 + (settings.scale_channel ? 6 * wide : 0);
   uint64_t matches = 56 / (step * step) + 1, start = settings.levels < 2 ? 16 : 4;
-  (void)target;
   return exemplar_pixels * (pyramid + matches + start + 4) + ((uint64_t)2 << 20) +
          bytes_of_tree(exemplar_pixels, &settings, (int)wide);
 }

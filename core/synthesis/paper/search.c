@@ -1,11 +1,11 @@
 #include "synthesis/paper/search.h"
 
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "synthesis/paper/scale_channel.h"
 
 /* Price of another scale: an octave costs this part of the exemplar's variance per value. */
 #define SCALE_PRICE 2.f

@@ -42,7 +42,7 @@ typedef struct colour {
 typedef struct cuts {
   const rc_kernels *kernels;
   rc_level *level;
-  rc_grid grid; /* of the box and a frame of 1 px */
+  rc_cut_grid grid; /* of the box and a frame of 1 px */
   /* Of the grid's pixels: */
   uint8_t *part;  /* those that take part */
   float *known;   /* what a distance counts */
@@ -239,7 +239,7 @@ static void add_edge(const cuts *c, size_t at, size_t next, int direction) {
 /* Lets a copy take what it makes cheaper. */
 static recede_status expand(rc_context *context, cuts *c, rc_copy copy, bool *changed) {
   rc_level *level = c->level;
-  rc_grid *g = &c->grid;
+  rc_cut_grid *g = &c->grid;
   size_t count = (size_t)g->width * (size_t)g->height;
   rc_query query;
   rc_query_init(&query);

@@ -14,7 +14,7 @@ enum { NO_PARENT = -1, THE_END = -2, ORPHAN = -3 };
 #define PIXELS_TO_POLL 10000
 
 typedef struct cut {
-  rc_grid *g;
+  rc_cut_grid *g;
   int step[4];
   int first, last; /* of the active pixels, linked by next */
   int32_t *orphans;
@@ -27,13 +27,13 @@ static int opposite(int direction) { return direction ^ 1; }
 /* What could still flow between a pixel and its neighbour, away from the source, if the pixel is
  * nearer to the root of that tree. */
 static int32_t left_over(const cut *c, int tree, int pixel, int direction) {
-  const rc_grid *g = c->g;
+  const rc_cut_grid *g = c->g;
   return tree == OF_SOURCE ? g->beside[direction][pixel]
                            : g->beside[opposite(direction)][pixel + c->step[direction]];
 }
 
 static void activate(cut *c, int pixel) {
-  rc_grid *g = c->g;
+  rc_cut_grid *g = c->g;
   if (g->next[pixel] != NOT_IN) return;
   g->next[pixel] = LAST;
   if (c->last == LAST)
@@ -44,7 +44,7 @@ static void activate(cut *c, int pixel) {
 }
 
 static int take_active(cut *c) {
-  rc_grid *g = c->g;
+  rc_cut_grid *g = c->g;
   while (c->first != LAST) {
     int pixel = c->first;
     c->first = g->next[pixel];
@@ -63,7 +63,7 @@ static void make_orphan(cut *c, int pixel) {
 
 /* The least capacity on the way from a pixel to the root of its tree. */
 static int32_t narrowest(const cut *c, int pixel, int32_t least) {
-  const rc_grid *g = c->g;
+  const rc_cut_grid *g = c->g;
   int tree = g->tree[pixel];
   while (g->parent[pixel] != THE_END) {
     int direction = g->parent[pixel], up = pixel + c->step[direction];
@@ -77,7 +77,7 @@ static int32_t narrowest(const cut *c, int pixel, int32_t least) {
 
 /* Sends the flow along that way. What has no capacity left is an orphan. */
 static void send(cut *c, int pixel, int32_t flow) {
-  rc_grid *g = c->g;
+  rc_cut_grid *g = c->g;
   bool down = g->tree[pixel] == OF_SOURCE;
   while (g->parent[pixel] != THE_END) {
     int direction = g->parent[pixel], up = pixel + c->step[direction];
@@ -93,7 +93,7 @@ static void send(cut *c, int pixel, int32_t flow) {
 
 /* From a pixel of the source's tree to its neighbour in the sink's. */
 static void augment(cut *c, int pixel, int direction) {
-  rc_grid *g = c->g;
+  rc_cut_grid *g = c->g;
   int other = pixel + c->step[direction];
   int32_t flow = g->beside[direction][pixel];
   flow = narrowest(c, pixel, flow);
@@ -107,7 +107,7 @@ static void augment(cut *c, int pixel, int direction) {
 /* Steps to the root of its tree, FAR if an orphan lies between; what was asked since the last
  * augmentation is remembered. */
 static int32_t steps_to_root(cut *c, int pixel) {
-  rc_grid *g = c->g;
+  rc_cut_grid *g = c->g;
   int32_t steps = 0, all;
   int at = pixel;
   for (;; steps++) {
@@ -131,7 +131,7 @@ static int32_t steps_to_root(cut *c, int pixel) {
 
 /* Finds the orphan another parent, or lets it go. */
 static void adopt(cut *c, int pixel) {
-  rc_grid *g = c->g;
+  rc_cut_grid *g = c->g;
   int tree = g->tree[pixel], best = NO_PARENT;
   int32_t least = FAR;
   for (int k = 0; k < 4; k++) {
@@ -156,7 +156,7 @@ static void adopt(cut *c, int pixel) {
 
 /* Grows the tree of an active pixel. The direction in which it meets the other tree, or -1. */
 static int grow(cut *c, int pixel) {
-  rc_grid *g = c->g;
+  rc_cut_grid *g = c->g;
   int tree = g->tree[pixel];
   for (int k = 0; k < 4; k++) {
     int other = pixel + c->step[k];
@@ -172,7 +172,7 @@ static int grow(cut *c, int pixel) {
   return -1;
 }
 
-recede_status rc_grid_new(rc_context *context, int width, int height, rc_grid *grid) {
+recede_status rc_grid_new(rc_context *context, int width, int height, rc_cut_grid *grid) {
   size_t count = (size_t)width * (size_t)height;
   grid->width = width, grid->height = height;
   RC_TRY(RC_NEW(context, count, &grid->end));
@@ -185,7 +185,7 @@ recede_status rc_grid_new(rc_context *context, int width, int height, rc_grid *g
 }
 
 static void plant(cut *c) {
-  rc_grid *g = c->g;
+  rc_cut_grid *g = c->g;
   int count = g->width * g->height;
   for (int i = 0; i < count; i++) {
     g->tree[i] = g->end[i] > 0 ? OF_SOURCE : g->end[i] < 0 ? OF_SINK : FREE;
@@ -196,7 +196,7 @@ static void plant(cut *c) {
     if (g->tree[i] != FREE) activate(c, i);
 }
 
-recede_status rc_grid_cut(rc_context *context, rc_grid *grid, uint8_t *at_sink) {
+recede_status rc_grid_cut(rc_context *context, rc_cut_grid *grid, uint8_t *at_sink) {
   int count = grid->width * grid->height, pixel;
   cut c = {.g = grid,
            .step = {-1, 1, -grid->width, grid->width},

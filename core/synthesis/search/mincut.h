@@ -6,7 +6,7 @@
 
 #include "base/context.h"
 
-typedef struct rc_grid {
+typedef struct rc_cut_grid {
   int width, height;  /* a frame of 1 px around it must have no capacities */
   int32_t *end;       /* > 0: capacity from the source, < 0: to the sink; what is left of it */
   int32_t *beside[4]; /* capacities to the pixel at the left, right, above, below; what is left */
@@ -14,10 +14,10 @@ typedef struct rc_grid {
   uint8_t *tree;
   int8_t *parent;
   int32_t *next, *distance, *time;
-} rc_grid;
+} rc_cut_grid;
 
-recede_status rc_grid_new(rc_context *context, int width, int height, rc_grid *grid);
+recede_status rc_grid_new(rc_context *context, int width, int height, rc_cut_grid *grid);
 /* at_sink: pixels that the cut leaves on the sink's side. */
-recede_status rc_grid_cut(rc_context *context, rc_grid *grid, uint8_t *at_sink);
+recede_status rc_grid_cut(rc_context *context, rc_cut_grid *grid, uint8_t *at_sink);
 
 #endif

@@ -112,11 +112,9 @@ void rc_field_from_coarser(rc_level *level, const rc_level *coarser) {
       size_t at = rc_level_at(level, x, y);
       level->field[at] = (rc_copy){NAN, NAN, NAN};
       level->cost[at] = RC_NO_COST;
-      /* An odd last row or column has no pixel of its own one level up. */
-      int cx = x / 2 < coarser->box.x1 ? x / 2 : coarser->box.x1 - 1;
-      int cy = y / 2 < coarser->box.y1 ? y / 2 : coarser->box.y1 - 1;
-      if (!rc_level_is_target(level, x, y) || !rc_level_is_target(coarser, cx, cy)) continue;
-      level->field[at] = rc_copy_finer(coarser->field[rc_level_at(coarser, cx, cy)]);
-      level->cost[at] = coarser->cost[rc_level_at(coarser, cx, cy)];
+      if (!rc_level_is_target(level, x, y)) continue;
+      size_t from = rc_level_at(coarser, x / 2, y / 2); /* a target, for it has one in it */
+      level->field[at] = rc_copy_finer(coarser->field[from]);
+      level->cost[at] = coarser->cost[from];
     }
 }

@@ -17,9 +17,8 @@
  * has sources that are too coarse for its lower. */
 #define SLICES 3
 /* A place at the coarsest level, whose hole is 18 px across or more, is that much of the hole's
- * width at the finest; distances are known up to 255. */
+ * width at the finest. */
 #define ROOM_OF_WIDTH (1. / 3)
-#define MOST_ROOM_PX 250
 
 typedef struct window {
   const rc_mask *flags;
@@ -92,7 +91,7 @@ recede_status rc_keep_near(rc_context *context, const rc_mask *flags, const rc_b
   uint8_t *distance;
   ring *rings;
   rc_block *mark = rc_mark(context);
-  v.room = (int)fmin(room, MOST_ROOM_PX);
+  v.room = (int)room;
   for (int i = 0; i < SLICES; i++)
     v.least_w[i] = band->least * pow(band->most / band->least, (double)i / SLICES);
   RC_TRY(RC_NEW(context, (size_t)flags->width * (size_t)flags->height, &distance));

@@ -11,8 +11,9 @@
 bool rc_all_is_near(const rc_mask *flags, const rc_box *target);
 
 /* Takes RC_SOURCE from pixels outside a window about target, the bounding box of RC_TARGET, whose
- * hole is hole_width px across at its widest. The window is wide enough to hold, if the picture
- * does, as many places for patches of the hole's own scales (band) as a fill needs. */
+ * hole is hole_width px across at its widest, or more than that 510. The window is wide enough to
+ * hold, if the picture does, as many places for patches of the hole's own scales (band) as a fill
+ * needs. */
 recede_status rc_keep_near(rc_context *context, const rc_mask *flags, const rc_box *target,
                            const rc_band *band, int hole_width);
 

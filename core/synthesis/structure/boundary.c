@@ -173,7 +173,9 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
   }
   /* Where it was found among the others, too, its place is known better. */
   if (!again && kept_count == RC_MOST_LINES) kept_count--;
-  if (!again) kept[kept_count++] = line;
+  int at = kept_count; /* strongest first */
+  for (; !again && at > 0 && kept[at - 1].strength < line.strength; at--) kept[at] = kept[at - 1];
+  if (!again) kept[at] = line, kept_count++;
   memcpy(lines, kept, (size_t)kept_count * sizeof *lines);
   *count = kept_count;
   return RECEDE_OK;
