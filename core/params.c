@@ -75,11 +75,10 @@ static const recede_param_info table[] = {
               "detail, too, and takes longer"),
            1, qualities, quality_labels, COMMON),
     INT("seed", seed, N_("See_d"), N_("Another seed gives another fill"), 0, 2147483647, 0, COMMON),
-    CHOICE(
-        "exemplar", exemplar, N_("Te_xture is seen"),
-        N_("Whether the exemplar recedes as the result does, or is seen from the front and to be "
-           "laid onto the plane"),
-        0, exemplars, exemplar_labels, COMMON | RECEDE_PARAM_SYNTHESIS),
+    CHOICE("exemplar", exemplar, N_("Te_xture is seen"),
+           N_("Whether the exemplar shows the plane receding, as the result does, or from the "
+              "front, to be laid onto it"),
+           0, exemplars, exemplar_labels, COMMON | RECEDE_PARAM_SYNTHESIS),
     POINTS("horizon", horizon, N_("Horizon"), N_("Two points of the horizon: X1,Y1,X2,Y2"), 4),
     POINTS("quad", quad, N_("Quad"),
            N_("Four corners of a rectangle on the plane: X1,Y1,X2,Y2,X3,Y3,X4,Y4"), 8),

@@ -45,7 +45,7 @@ gboolean rp_host_write_new_image(rp_host *host, const rp_picture *picture);
 
 int rp_host_threads(void);
 /* GIMP's own progress, for runs without a dialog; starts with the first call. */
-void rp_host_progress(const char *text, double fraction);
+void rp_host_progress(const char *title, const char *text, double fraction);
 /* Shows the procedure's dialog and does the runs it asks for. TRUE: request holds a finished one.
  */
 gboolean rp_host_dialog(rp_host *host, rp_settings *settings, rp_picture *picture,

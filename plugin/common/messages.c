@@ -67,6 +67,10 @@ static const struct {
     {"write", N_("Writing")},
 };
 
+const char *rp_title(const rp_request *request) {
+  return request->run == RP_RUN_SYNTHESIZE ? _("Perspective Texture") : _("Perspective Fill");
+}
+
 const char *rp_stage_label(const char *stage) {
   for (gsize i = 0; i < G_N_ELEMENTS(stages); i++)
     if (strcmp(stages[i].stage, stage) == 0) return _(stages[i].label);
@@ -94,6 +98,9 @@ char *rp_failure(const rp_request *request) {
                         "Check the horizon in the preview, or change slant and tilt."));
     case RECEDE_EMPTY_SOURCE: return empty_source(request);
     case RECEDE_NO_PLANE:
+      if (request->params.orientation != RECEDE_ORIENTATION_AUTO)
+        return g_strdup(_("The new image lies beyond the horizon of this plane. Choose a smaller "
+                          "slant."));
       return g_strdup(_("The orientation of the plane could not be read from the picture. Set "
                         "slant and tilt."));
     case RECEDE_TOO_LARGE:
@@ -120,7 +127,10 @@ char *rp_warning(const rp_request *request) {
     add_sentence(text, g_strdup(_("The orientation could not be read from the picture with "
                                   "confidence; it was filled without perspective. Set slant and "
                                   "tilt.")));
-  if (report->refused_pixels > 0)
+  if (report->refused_pixels > 0 && request->run == RP_RUN_SYNTHESIZE)
+    add_sentence(text, g_strdup_printf(_("%.0f pixels lie beyond the horizon and are empty."),
+                                       (double)report->refused_pixels));
+  else if (report->refused_pixels > 0)
     add_sentence(text, g_strdup_printf(_("%.0f selected pixels lie beyond the horizon and were "
                                          "left as they are."),
                                        (double)report->refused_pixels));

@@ -21,6 +21,8 @@ const char *rp_selection_outside(void);
 const char *rp_one_layer_only(void);
 const char *rp_no_memory(void);
 
+/* What is running. */
+const char *rp_title(const rp_request *request);
 /* The name of a stage of the core. */
 const char *rp_stage_label(const char *stage);
 /* Why a run failed and what to do (free it). */

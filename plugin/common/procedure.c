@@ -78,7 +78,7 @@ static void run_with_gimps_progress(rp_request *request, gpointer user) {
   rp_state state;
   (void)user;
   while (!(state = rp_worker_wait(worker)).finished)
-    rp_host_progress(rp_stage_label(state.stage), state.fraction);
+    rp_host_progress(rp_title(request), rp_stage_label(state.stage), state.fraction);
   rp_worker_finish(&worker);
 }
 

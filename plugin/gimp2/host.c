@@ -151,9 +151,9 @@ int rp_host_threads(void) {
   return MAX(threads, 0);
 }
 
-void rp_host_progress(const char *text, double fraction) {
+void rp_host_progress(const char *title, const char *text, double fraction) {
   static gboolean begun;
-  if (!begun) gimp_progress_init(_("Perspective Fill"));
+  if (!begun) gimp_progress_init(title);
   begun = TRUE;
   gimp_progress_set_text(text);
   gimp_progress_update(fraction);

@@ -141,9 +141,9 @@ gboolean rp_host_write_new_image(rp_host *host, const rp_picture *picture) {
 
 int rp_host_threads(void) { return gimp_get_num_processors(); }
 
-void rp_host_progress(const char *text, double fraction) {
+void rp_host_progress(const char *title, const char *text, double fraction) {
   static gboolean begun;
-  if (!begun) gimp_progress_init(_("Perspective Fill"));
+  if (!begun) gimp_progress_init(title);
   begun = TRUE;
   gimp_progress_set_text(text);
   gimp_progress_update(fraction);

@@ -58,7 +58,8 @@ static void lies_as_the_plane_does(void) {
     task_synthesize(&t, WIDTH, HEIGHT);
     g_assert_cmpstr(t.message, ==, "");
     g_assert_cmpuint(t.report.peak_bytes, <=, t.report.estimated_bytes);
-    static const double pixels[][2] = {{60, 10}, {30, 15}, {90, 15}, {20, 60}, {100, 60}, {60, 100}};
+    static const double pixels[][2] = {{60, 10}, {30, 15},  {90, 15},
+                                       {20, 60}, {100, 60}, {60, 100}};
     for (guint n = 0; n < G_N_ELEMENTS(pixels); n++) {
       point at = laid_at(&t.report.orientation.plane, sides[i].anchor,
                          pixels[n][0] - (SIDE - 1) / 2., pixels[n][1]);
