@@ -202,7 +202,9 @@ static recede_status plan_fill(recede_job *job, rc_target_summary *summary) {
   RC_TRY(check_same_size(job, &job->mask, "mask"));
   RC_TRY(check_same_size(job, &job->source, "source mask"));
   RC_TRY(rc_summarize_target(&job->context, &job->mask, summary));
-  rc_box box = rc_problem_box(summary, job->image.width, job->image.height), target = summary->box;
+  rc_views views = views_of(job);
+  RC_TRY(rc_look_around(&job->context, &views, summary));
+  rc_box box = summary->looked_at, target = summary->box;
   uint64_t bytes =
       bytes_of_fill(job, pixels_in(box), (uint64_t)(box.x1 - box.x0),
                     (uint64_t)(target.x1 - target.x0), (uint64_t)(target.y1 - target.y0));

@@ -28,7 +28,7 @@ recede_status rc_sum_target(rc_context *context, const recede_view *mask, const 
                             rc_target_summary *summary) {
   double sum_x = 0, sum_y = 0;
   float *row;
-  *summary = (rc_target_summary){{mask->width, mask->height, 0, 0}, 0, 0, 0};
+  *summary = (rc_target_summary){.box = {mask->width, mask->height, 0, 0}};
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, mask->width, &row));
   for (int y = 0; y < mask->height; y++) {
@@ -60,9 +60,35 @@ recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
                  "white.");
 }
 
-rc_box rc_problem_box(const rc_target_summary *summary, int width, int height) {
+recede_status rc_look_around(rc_context *context, const rc_views *views,
+                             rc_target_summary *summary) {
+  int width = views->image->width, height = views->image->height;
   double margin = MARGIN_OF_HOLE * rc_longer_side(summary->box) + LEAST_MARGIN_PX;
-  return rc_box_grown(summary->box, (int)fmin(margin, 1 << 20), width, height);
+  rc_box around = rc_box_grown(summary->box, (int)fmin(margin, 1 << 20), width, height);
+  rc_box all = around;
+  float *source, *target;
+  summary->looked_at = around;
+  if (!views->source) return RECEDE_OK;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, width, &source));
+  RC_TRY(RC_NEW(context, width, &target));
+  for (int y = 0; y < height; y++) {
+    rc_view_read(views->source, 0, y, width, source);
+    rc_view_read(views->mask, 0, y, width, target);
+    for (int x = 0; x < width; x++) {
+      if (!(source[x] > .5f) || target[x] > 0) continue;
+      if (x >= around.x0 && x < around.x1 && y >= around.y0 && y < around.y1) {
+        rc_release(context, mark);
+        return RECEDE_OK;
+      }
+      all = (rc_box){x < all.x0 ? x : all.x0, y < all.y0 ? y : all.y0, x >= all.x1 ? x + 1 : all.x1,
+                     y >= all.y1 ? y + 1 : all.y1};
+    }
+    RC_TRY(rc_poll(context));
+  }
+  rc_release(context, mark);
+  summary->looked_at = all;
+  return RECEDE_OK;
 }
 
 /* The plane's w in the problem's coordinates, in units of its value at (x, y) of the whole. */
@@ -183,7 +209,7 @@ static recede_status check_source(rc_context *context, const rc_problem *problem
 recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
                                  const recede_plane *plane, const rc_target_summary *summary,
                                  rc_problem *problem) {
-  rc_box box = rc_problem_box(summary, views->image->width, views->image->height);
+  rc_box box = summary->looked_at;
   double x = summary->x, y = summary->y;
   *problem = (rc_problem){.plane = *plane, .origin_x = box.x0, .origin_y = box.y0};
   int colours = views->image->channels < 3 ? 1 : 3;

@@ -9,6 +9,7 @@ typedef struct rc_target_summary {
   rc_box box; /* of the mask's pixels above 0 */
   uint64_t pixels;
   double x, y; /* centroid */
+  rc_box looked_at;
 } rc_target_summary;
 
 /* Of what the mask has below the line through (line[0], line[1]) and (line[2], line[3]), of all
@@ -18,8 +19,10 @@ recede_status rc_sum_target(rc_context *context, const recede_view *mask, const 
 /* Of all the mask. RECEDE_EMPTY_TARGET when it selects nothing. */
 recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
                                   rc_target_summary *summary);
-/* The part of the picture that a fill looks at: the target's box with its surroundings. */
-rc_box rc_problem_box(const rc_target_summary *summary, int width, int height);
+/* Sets the part of the picture that a fill looks at: the target's box with its surroundings, and
+ * all of a source mask that has nothing there. */
+recede_status rc_look_around(rc_context *context, const rc_views *views,
+                             rc_target_summary *summary);
 /* Target pixels on or beyond the horizon are refused: counted in the report, left as they were. */
 recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
                                  const recede_plane *plane, const rc_target_summary *summary,

@@ -154,5 +154,20 @@ def test_an_exr_lies_where_its_windows_say(folder):
     check(b"64 x 40" in fill(folder, image, other, out="out.exr", code=3).stderr)
 
 
+def test_a_source_may_lie_far_away(folder):
+    """Farther than a fill looks of itself; and what lies between is not copied."""
+    pixels = texture(100, 900)
+    pixels[:, 100:700] = (0, 0, 255)
+    source = np.zeros((100, 900), np.uint8)
+    source[:, 720:] = 255
+    image = write(folder / "wide.png", pixels)
+    for method in ("plane", "paper"):
+        fill(folder, image, write(folder / "mask.png", hole(100, 900, (30, 60, 20, 60))),
+             "--source", write(folder / "far.png", source), "--method", method)
+        made = read(folder / "out.png")[30:60, 20:60].astype(int)
+        red = (made[:, :, 2] - made[:, :, :2].max(axis=2) > 100).mean()
+        check(red == 0 and made.std() > 5, method, red, made.std())
+
+
 if __name__ == "__main__":
     sys.exit(harness.main(globals()))
