@@ -33,13 +33,17 @@ static gboolean set_param(options *given, const char *start, const char *key, co
   return refuse(error, "%s%s", start, message);
 }
 
-static gboolean on_param(const char *name, const char *value, gpointer data, GError **error) {
-  options *given = ((parse *)data)->given;
-  const char *key = name + strspn(name, "-");
+static void note_orientation(options *given, const char *key) {
   if (strcmp(key, "slant") == 0) given->slant_given = true;
   if (strcmp(key, "tilt") == 0) given->tilt_given = true;
   if (strcmp(key, "horizon") == 0) given->horizon_given = true;
   if (strcmp(key, "quad") == 0) given->quad_given = true;
+}
+
+static gboolean on_param(const char *name, const char *value, gpointer data, GError **error) {
+  options *given = ((parse *)data)->given;
+  const char *key = name + strspn(name, "-");
+  note_orientation(given, key);
   return set_param(given, "--", key, value ? value : "1", error);
 }
 
@@ -48,6 +52,7 @@ static gboolean on_set(const char *name, const char *value, gpointer data, GErro
   (void)name;
   if (!equals) return refuse(error, "--set: '%s' is not KEY=VALUE", value);
   char *key = g_strndup(value, (gsize)(equals - value));
+  note_orientation(((parse *)data)->given, key);
   gboolean good = set_param(((parse *)data)->given, "--set: ", key, equals + 1, error);
   g_free(key);
   return good;
@@ -67,6 +72,9 @@ static char *placeholder(const recede_param_info *row) {
 }
 
 static char *explanation(const recede_param_info *row) {
+  if (strcmp(row->key, "slant") == 0) return g_strdup_printf("%s (default: estimated)", row->help);
+  if (strcmp(row->key, "tilt") == 0)
+    return g_strdup_printf("%s (with --slant; default 0°)", row->help);
   if (is_switch(row) || row->type == RECEDE_PARAM_POINTS) return g_strdup(row->help);
   if (row->type == RECEDE_PARAM_CHOICE)
     return g_strdup_printf("%s (default %s)", row->help, row->choices[(int)row->default_value]);
@@ -113,13 +121,18 @@ static void add_files(GOptionGroup *group, options_of command, options *given) {
   GOptionEntry mask[] = {ENTRY("mask", 0, FILENAME, mask,
                                "White is to be filled, gray is blended, black stays", "MASK"),
                          END};
-  GOptionEntry source[] = {
-      ENTRY("source", 0, FILENAME, source, "White may be copied from (default: all)", "MASK"), END};
+  GOptionEntry source[] = {ENTRY("source", 0, FILENAME, source,
+                                 command == FILL
+                                     ? "White may be copied from (default: what lies around MASK)"
+                                     : "White may be copied from (default: all)",
+                                 "MASK"),
+                           END};
   GOptionEntry size[] = {ENTRY("size", 0, STRING, size_text, "Size of the output, px", "WxH"), END};
-  GOptionEntry kind[] = {ENTRY("kind", 0, STRING, kind_text,
-                               "Which scale (default across); paper is the paper's eqs 1-3",
-                               "across|along|area|paper"),
-                         END};
+  GOptionEntry kind[] = {
+      ENTRY("kind", 0, STRING, kind_text,
+            "Which scale (default across, with --method paper paper: the paper's eqs 1-3)",
+            "across|along|area|paper"),
+      END};
   if (command != ORIENT) g_option_group_add_entries(group, output);
   if (command == FILL || command == ORIENT) g_option_group_add_entries(group, mask);
   if (command != SCALE_MAP) g_option_group_add_entries(group, source);
@@ -249,15 +262,22 @@ static const struct {
          "have the size seen or the size stored.\n"
          "Exit codes: 0 done, 1 failed, 2 usage, 3 input, 4 output, 5 memory or size,\n"
          "128 + signal."},
-    [SYNTHESIZE] = {"EXEMPLAR --size WxH -o OUT",
-                    "Makes a picture of a receding plane, of any size, from an example of it.",
-                    "Example:\n"
-                    "  recede synthesize lawn.png --size 1024x768 -o big.png --slant 60 --tilt 0"},
+    [SYNTHESIZE] =
+        {"EXEMPLAR --size WxH -o OUT",
+         "Makes a picture of a receding plane, of any size, from an example of it.",
+         "Examples:\n"
+         "  recede synthesize beach.png --size 1600x900 -o more-beach.png --slant 60\n"
+         "  recede synthesize tiles.png --size 1024x768 -o floor.png --slant 65 \\\n"
+         "    --exemplar frontal\n\n"
+         "EXEMPLAR is a picture of the receding plane and becomes the middle of OUT; or,\n"
+         "with --exemplar frontal, it shows the texture from the front and is laid onto\n"
+         "the plane. Slant, field of view, horizon and quad are those of OUT (of EXEMPLAR\n"
+         "with --method paper or kwatra)."},
     [SCALE_MAP] =
         {"IMAGE|--size WxH -o OUT",
-         "Writes how large a texel of the plane is at every pixel, 1 at the centre.\n"
-         ".exr and .tif hold the values (NaN beyond the horizon); other formats a picture:\n"
-         "brighter is nearer, a line at every doubling, red beyond the horizon.",
+         "Writes how many px a texel of the plane takes at every pixel, for one that is 1 px wide\n"
+         "at the centre. .exr and .tif hold the values (NaN beyond the horizon), formats of 8 bits\n"
+         "a picture: brighter is nearer, a line at every doubling, red beyond the horizon.",
          "Example:\n"
          "  recede scale-map --size 800x600 --slant 60 --tilt 20 -o scale.exr"},
     [ORIENT] = {"IMAGE",

@@ -172,10 +172,12 @@ static command_exit write_map(scale_map *this) {
   free(picture.data);
   if (code == EXIT_DONE) {
     char text[200];
-    snprintf(text, sizeof text,
-             "scale %s: %.4g to %.4g, 1 at (%g, %g); white is the largest, a line at each doubling",
-             this->scale.kind, this->scale.smallest, this->scale.largest, this->scale.reference_x,
-             this->scale.reference_y);
+    snprintf(
+        text, sizeof text,
+        "scale %s: %.4g to %.4g, of a texel 1 px wide at (%g, %g); white is the largest, a line "
+        "at each doubling",
+        this->scale.kind, this->scale.smallest, this->scale.largest, this->scale.reference_x,
+        this->scale.reference_y);
     command_warn(this->given, NULL, text);
   }
   return code;

@@ -1,5 +1,5 @@
 /* The one table of parameters: the command's options, the GIMP procedures' arguments, the dialog's
- * widgets, the man page and the JSON are made from it. */
+ * widgets and the JSON are made from it; the man page is held against it. */
 #include <errno.h>
 #include <locale.h>
 #include <math.h>

@@ -20,3 +20,17 @@ pair() {
 pair pier 620x400+290+390 --horizon 0,362,1200,362
 pair motorway 560x260+60+280 --horizon 0,302,960,302
 pair roofs 330x230+10+235 --frontal
+
+# laid NAME SLANT: tests/data/NAME.png, from the front, beside a floor of it.
+laid() {
+  local texture=tests/data/$1.png
+  build/cli/recede synthesize "$texture" -o "$work/floor.png" --size 640x320 --slant "$2" \
+    --exemplar frontal --force
+  convert "$texture" -crop 320x320+0+0 +repage "$work/texture.png"
+  convert "$work/texture.png" "$work/floor.png" -bordercolor white -border 4x0 +append "$work/$1.png"
+}
+
+laid sk_gravel 64
+laid brick_regular 64
+convert "$work/sk_gravel.png" "$work/brick_regular.png" -bordercolor white -border 0x4 -append \
+  -quality 88 -strip docs/images/laid.jpg
