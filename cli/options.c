@@ -265,8 +265,9 @@ static const struct {
     [SYNTHESIZE] =
         {"EXEMPLAR --size WxH -o OUT",
          "Makes a picture of a receding plane, of any size, from an example of it.",
-         "Examples:\n"
+         "Example:\n"
          "  recede synthesize beach.png --size 1600x900 -o more-beach.png --slant 60\n"
+         "A floor of tiles that are seen from the front:\n"
          "  recede synthesize tiles.png --size 1024x768 -o floor.png --slant 65 \\\n"
          "    --exemplar frontal\n\n"
          "EXEMPLAR is a picture of the receding plane and becomes the middle of OUT; or,\n"

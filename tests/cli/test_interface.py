@@ -305,6 +305,35 @@ def test_synthesize(folder):
             check(pixels.std() > 1000, "a flat result")
 
 
+def test_an_exemplar_seen_from_the_front(folder):
+    image = write(folder / "in.png", texture())
+    out = folder / "out.png"
+    made = {}
+    for seen in ("receding", "frontal"):
+        recede("synthesize", image, "--size", "120x90", "--slant", "55", "-o", out, "--force",
+               "--exemplar", seen)
+        made[seen] = read(out).astype(int)
+        check(made[seen].shape == (90, 120, 3) and made[seen].std() > 10, seen)
+    middle = texture().astype(int)
+    check((made["receding"][21:69, 28:92] == middle).all(), "the exemplar is not the middle")
+    # Its lower edge lies in the middle of the result's: as wide, and hardly foreshortened.
+    below = np.abs(made["frontal"][88, 32:88] - middle[46, 4:60]).mean()
+    check(below < 20, "it does not begin below", below)
+    for more, word in (((), b"slant"), (("--slant", "50", "--method", "paper"), b"method plane"),
+                       (("--slant", "170"), b"horizon")):
+        done = recede("synthesize", image, "--size", "120x90", "-o", out, "--force", "--exemplar",
+                      "frontal", *more, code=2)
+        check(word in done.stderr, more, done.stderr)
+    recede("fill", image, "--mask", image, "--exemplar", "frontal", "-o", out, code=2)
+
+
+def test_an_orientation_set_is_one_given(folder):
+    image = write(folder / "in.png", texture())
+    done = recede("orient", image, "--set", "slant=30", "--set", "tilt=20")
+    check("slant 30.0°, tilt 20.0°".encode() in done.stdout, done.stdout)
+    recede("orient", image, "--set", "tilt=20", code=2)
+
+
 def test_closed_standard_output(folder):
     image, mask = pair(folder)
     reading, writing = os.pipe()
