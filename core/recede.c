@@ -92,7 +92,8 @@ static recede_status begin(recede_job *job) {
   memset(&context->report, 0, sizeof context->report);
   context->message[0] = '\0';
   context->peak_bytes = context->allocations = 0;
-  context->fraction = context->last_poll = context->span_from = 0;
+  context->fraction = context->last_poll = 0;
+  rc_span(context, 0, 1);
   context->stage = NULL;
   context->report.threads = context->threads;
   context->report.seed = job->params.seed;
@@ -293,10 +294,14 @@ static recede_status plan_synthesis(recede_job *job, int width, int height) {
   if (job->params.exemplar == RECEDE_EXEMPLAR_FRONTAL) RC_TRY(check_frontal(job));
   uint64_t pixels = (uint64_t)width * (uint64_t)height;
   uint64_t exemplar = (uint64_t)job->image.width * (uint64_t)job->image.height;
+  bool in_plane = job->params.method == RECEDE_METHOD_PLANE;
   int row = job->image.width > width ? job->image.width : width;
-  uint64_t bytes =
-      bytes_of_fill(job, pixels + exemplar, (uint64_t)row, (uint64_t)width, (uint64_t)height);
-  return refuse_too_large(&job->context, bytes, pixels + exemplar);
+  uint64_t bytes = bytes_of_fill(job, in_plane ? pixels : pixels + exemplar, (uint64_t)row,
+                                 (uint64_t)width, (uint64_t)height);
+  /* As floats with flags; laid at all sizes, with what is scratch at the largest. */
+  uint64_t of_pixel = (job->image.channels < 3 ? 1 : 3) * sizeof(float) + 1;
+  if (in_plane) bytes += exemplar * of_pixel * 4 / 3 + exemplar * 2 + ((uint64_t)64 << 10);
+  return refuse_too_large(&job->context, bytes, pixels > exemplar ? pixels : exemplar);
 }
 
 recede_status recede_job_estimate_synthesize(recede_job *job, int width, int height,

@@ -296,7 +296,7 @@ RECEDE_API recede_status recede_job_set_params(recede_job *job, const recede_par
  * the others are asked, too, unless it is sure, and believed where they are far surer). */
 RECEDE_API recede_status recede_job_orient(recede_job *job, recede_orientation *orientation);
 /* What fill (or synthesize, to a width and height) would take: memory in bytes, at the most; time
- * in seconds, roughly, by method plane at normal quality. Of the pixels only the mask's are read.
+ * in seconds, roughly, by method plane at normal quality. Of the pixels only the masks' are read.
  * Both are told on RECEDE_TOO_LARGE, too. */
 RECEDE_API recede_status recede_job_estimate_fill(recede_job *job, uint64_t *bytes,
                                                   double *seconds);

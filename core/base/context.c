@@ -84,13 +84,16 @@ recede_status rc_stage(rc_context *context, const char *name, double from, doubl
   rc_stage_end(context);
   context->stage = name;
   context->stage_start = rc_seconds();
-  double span = 1 - context->span_from;
+  double span = context->span_to - context->span_from;
   context->fraction_from = context->span_from + from * span;
   context->fraction_to = context->span_from + to * span;
   return rc_progress(context, 0);
 }
 
-void rc_span(rc_context *context, double from) { context->span_from = from; }
+void rc_span(rc_context *context, double from, double to) {
+  context->span_from = from;
+  context->span_to = to;
+}
 
 static recede_status ask_host(rc_context *context) {
   context->last_poll = rc_seconds();

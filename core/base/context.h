@@ -22,7 +22,7 @@ typedef struct rc_context {
   double stage_start, last_poll;
   const char *stage;
   double fraction, fraction_from, fraction_to;
-  double span_from; /* stages fill the run from there on */
+  double span_from, span_to; /* of the run, what stages are fractions of */
 } rc_context;
 
 /* Passes any status but RECEDE_OK on to the caller. Memory needs no clean-up on the way: it belongs
@@ -46,8 +46,8 @@ void rc_warn(rc_context *context, const char *format, ...) __attribute__((format
  * rc_progress() within it runs over from..to of the whole run. Stages do not nest. */
 recede_status rc_stage(rc_context *context, const char *name, double from, double to);
 void rc_stage_end(rc_context *context);
-/* Fractions of the stages opened from now on are of what is left of the run from there on. */
-void rc_span(rc_context *context, double from);
+/* Fractions of the stages opened from now on are of that part of the run. */
+void rc_span(rc_context *context, double from, double to);
 /* fraction 0..1 of the stage. RECEDE_CANCELLED when the run is to stop. Calling thread only. */
 recede_status rc_progress(rc_context *context, double fraction);
 /* Cheap enough for inner loops of the calling thread: asks the host at most every 30 ms. */

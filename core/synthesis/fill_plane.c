@@ -69,14 +69,15 @@ static rc_band own_scales(const rc_problem *problem) {
   return band;
 }
 
-/* Twice the largest distance of such a pixel from one that is not, which is known up to 255 px. */
+/* Twice the largest distance of such a pixel from one that is not, which is known up to 255 px. A
+ * hole goes on beyond the picture's border, source ends there. */
 static recede_status widest(rc_context *context, const rc_mask *flags, uint8_t wanted, int *width) {
   uint8_t *depth;
   int most = 0;
   size_t count = (size_t)flags->width * (size_t)flags->height;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, count, &depth));
-  rc_distance_inside(flags->data, wanted, flags->width, flags->height, false, depth);
+  rc_distance_inside(flags->data, wanted, flags->width, flags->height, wanted == RC_SOURCE, depth);
   for (size_t i = 0; i < count; i++) most = depth[i] > most ? depth[i] : most;
   *width = 2 * most;
   rc_release(context, mark);
@@ -190,6 +191,7 @@ static void count_shortfall(rc_context *context, const rc_descent *e, const rc_l
       rc_copy copy = level->field[rc_level_at(level, x, y)];
       if (isnan(copy.a)) {
         missing++;
+        if (e->rest) e->rest[(size_t)y * (size_t)level->width + (size_t)x] = 2;
         continue;
       }
       rc_place place =
@@ -339,6 +341,6 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int ch
   uint64_t descent = levels + (last > detail ? last : detail);
   /* Before it, of the coarsest level. */
   uint64_t kin = RC_KIN_BYTES_PER_PX * (pixels < RC_MOST_LOOKED_AT ? pixels : RC_MOST_LOOKED_AT);
-  uint64_t steps = pixels * (4 * c + 3);
+  uint64_t steps = pixels * (4 * c + 4);
   return pyramid + conditions + (descent > kin ? descent : kin) + steps + ((uint64_t)4 << 20);
 }

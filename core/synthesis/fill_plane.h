@@ -6,7 +6,7 @@
 
 /* Target pixels that no source is right for. */
 typedef struct rc_shortfall {
-  uint8_t *rest;      /* in: of each pixel of the problem, 0; out: 1 for those */
+  uint8_t *rest; /* in: of each pixel of the problem, 0; out: 1 for those, 2 for missing ones */
   uint64_t continued; /* too small or too large for any: they go on what is beside them */
   uint64_t missing;   /* have the smooth tone alone */
 } rc_shortfall;

@@ -12,6 +12,8 @@
  * many themselves. */
 #define LEAST_MARGIN_PX 300
 #define MARGIN_OF_HOLE .5
+/* So much of a source mask within it is enough. */
+#define NEAR_ENOUGH_PX (64 * 64)
 /* Target pixels with less than this part of the nearest target pixel's w are not on the plane: a
  * texel there is a hundredth of a px per px of the nearest. */
 #define LEAST_W_OF_TARGET .01
@@ -62,7 +64,7 @@ recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
 
 recede_status rc_look_around(rc_context *context, const rc_views *views,
                              rc_target_summary *summary) {
-  int width = views->image->width, height = views->image->height;
+  int width = views->image->width, height = views->image->height, near = 0;
   double margin = MARGIN_OF_HOLE * rc_longer_side(summary->box) + LEAST_MARGIN_PX;
   rc_box around = rc_box_grown(summary->box, (int)fmin(margin, 1 << 20), width, height);
   rc_box all = around;
@@ -72,22 +74,19 @@ recede_status rc_look_around(rc_context *context, const rc_views *views,
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, width, &source));
   RC_TRY(RC_NEW(context, width, &target));
-  for (int y = 0; y < height; y++) {
+  for (int y = 0; y < height && near < NEAR_ENOUGH_PX; y++) {
     rc_view_read(views->source, 0, y, width, source);
     rc_view_read(views->mask, 0, y, width, target);
     for (int x = 0; x < width; x++) {
       if (!(source[x] > .5f) || target[x] > 0) continue;
-      if (x >= around.x0 && x < around.x1 && y >= around.y0 && y < around.y1) {
-        rc_release(context, mark);
-        return RECEDE_OK;
-      }
+      near += x >= around.x0 && x < around.x1 && y >= around.y0 && y < around.y1;
       all = (rc_box){x < all.x0 ? x : all.x0, y < all.y0 ? y : all.y0, x >= all.x1 ? x + 1 : all.x1,
                      y >= all.y1 ? y + 1 : all.y1};
     }
     RC_TRY(rc_poll(context));
   }
   rc_release(context, mark);
-  summary->looked_at = all;
+  if (near < NEAR_ENOUGH_PX) summary->looked_at = all;
   return RECEDE_OK;
 }
 
@@ -199,6 +198,11 @@ static recede_status check_source(rc_context *context, const rc_problem *problem
   size_t pixels = (size_t)problem->flags.width * (size_t)problem->flags.height, sources = 0;
   for (size_t i = 0; i < pixels; i++) sources += problem->flags.data[i] & RC_SOURCE ? 1 : 0;
   if (sources) return RECEDE_OK;
+  if (problem->synthesis)
+    return rc_fail(
+        context, RECEDE_EMPTY_SOURCE,
+        "Nothing is left to copy from: the exemplar is too small, or too little of it is "
+        "opaque, finite, on the plane and inside the source region.");
   return rc_fail(
       context, RECEDE_EMPTY_SOURCE,
       "Nothing is left to copy from: no pixel more than %d px from the mask is opaque, finite, on "
@@ -292,8 +296,8 @@ recede_status rc_problem_of_synthesis(rc_context *context, const rc_views *exemp
   if (laid) rc_lay_anchor(plane, &x, &y);
   if (recede_plane_w(plane, x, y) <= 0)
     return rc_fail(context, RECEDE_NO_PLANE,
-                   laid ? "The result shows nothing of the plane: all of it lies beyond the "
-                          "horizon. Give a smaller slant."
+                   laid ? "The result shows nothing of the plane, or only a corner: the rest lies "
+                          "beyond the horizon. Give a smaller slant."
                         : "The exemplar's centre lies beyond the horizon: give a slant below 90 "
                           "degrees.");
   RC_TRY(

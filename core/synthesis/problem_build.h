@@ -20,7 +20,7 @@ recede_status rc_sum_target(rc_context *context, const recede_view *mask, const 
 recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
                                   rc_target_summary *summary);
 /* Sets the part of the picture that a fill looks at: the target's box with its surroundings, and
- * all of a source mask that has nothing there. */
+ * all of a source mask that has hardly anything there. */
 recede_status rc_look_around(rc_context *context, const rc_views *views,
                              rc_target_summary *summary);
 /* Target pixels on or beyond the horizon are refused: counted in the report, left as they were. */

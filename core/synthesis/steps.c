@@ -1,6 +1,7 @@
 /* Method plane: what is too far away for any source is filled after the rest, from it. Its patches
  * cover so much more of the plane than nearer ones that none lies wholly in source: of a texture
  * seen only at one's feet that is most of a floor. */
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -8,6 +9,8 @@
 
 /* Steps are worth their time for so much of the target. */
 #define LEAST_REST .01
+/* And take so much longer than the first fill. */
+#define FIRST_SHARE .4
 /* Pixels are sorted by w into bins, eight an octave, 1 in the middle: those of a float's first
  * mantissa bits, so of 1.07 to 1.13 times each. */
 #define BIN_SHIFT 20
@@ -21,7 +24,8 @@
  * thinner than a patch. */
 #define LAST_PART .03
 /* A step looks at what is up to so many times nearer than what it fills. */
-#define LOOKED_AT 3.f
+#define LOOKED_AT 3.
+#define LEAST_MARGIN_PX 16
 
 typedef struct tally {
   uint64_t target[BINS], source[BINS];
@@ -82,25 +86,30 @@ static int nearest(const tally *t) {
   return bin;
 }
 
-/* Of the target's bins from first on: what is looked at to fill them. */
+/* What is looked at to fill the target's bins from first on: up to some times nearer, and so far
+ * that there is source. */
 static rc_box box_of_step(const steps *s, int first) {
   const rc_mask *flags = &s->flags;
   rc_line line = s->problem->line;
   rc_box box = {flags->width, flags->height, 0, 0};
-  float most = 0;
-  for (int y = 0; y < flags->height; y++)
-    for (int x = 0; x < flags->width; x++)
-      if (*rc_flag(flags, x, y) & RC_TARGET && bin_of(&line, x, y) >= first)
-        most = (float)rc_w(&line, x, y) > most ? (float)rc_w(&line, x, y) : most;
+  double most = 0, source = INFINITY;
   for (int y = 0; y < flags->height; y++)
     for (int x = 0; x < flags->width; x++) {
-      if (!*rc_flag(flags, x, y) || (float)rc_w(&line, x, y) > LOOKED_AT * most) continue;
+      uint8_t flag = *rc_flag(flags, x, y);
+      double w = rc_w(&line, x, y);
+      if (flag & RC_TARGET && bin_of(&line, x, y) >= first) most = fmax(most, w);
+      if (flag & RC_SOURCE) source = fmin(source, w);
+    }
+  most = LOOKED_AT * fmax(most, source);
+  for (int y = 0; y < flags->height; y++)
+    for (int x = 0; x < flags->width; x++) {
+      if (!*rc_flag(flags, x, y) || rc_w(&line, x, y) > most) continue;
       if (x < box.x0) box.x0 = x;
       if (x >= box.x1) box.x1 = x + 1;
       if (y < box.y0) box.y0 = y;
       box.y1 = y + 1;
     }
-  return box;
+  return rc_box_grown(box, LEAST_MARGIN_PX, flags->width, flags->height);
 }
 
 /* The part of the whole in the box, with its own target. */
@@ -132,42 +141,48 @@ static recede_status cut_out(rc_context *context, const steps *s, rc_box box, in
   return RECEDE_OK;
 }
 
+/* A pixel is filled. first: by the first fill; where that had no source either, it is none. */
+static void keep(steps *s, int x, int y, bool first) {
+  uint8_t rest = first ? s->shortfall.rest[(size_t)y * (size_t)s->flags.width + (size_t)x] : 0;
+  *rc_flag(&s->flags, x, y) = rest ? RC_KNOWN : RC_KNOWN | RC_SOURCE;
+  s->shortfall.continued += rest == 1;
+  s->shortfall.missing += rest == 2;
+  s->done++;
+}
+
 /* Fills the bins of the target from first on. */
 static recede_status fill_step(rc_context *context, steps *s, int first) {
   rc_problem part;
   recede_params params = *s->params;
   rc_shortfall shortfall = {NULL, 0, 0};
   rc_box box = box_of_step(s, first);
+  size_t bytes = (size_t)s->filled->channels * sizeof(float);
   rc_block *mark = rc_mark(context);
   RC_TRY(cut_out(context, s, box, first, &part));
+  RC_TRY(
+      RC_NEW_ZERO(context, (size_t)part.flags.width * (size_t)part.flags.height, &shortfall.rest));
   params.surface = context->report.surface; /* one for all */
   RC_TRY(rc_fill_plane(context, &part, &params, &part.image, &shortfall));
   for (int y = part.target.y0; y < part.target.y1; y++)
     for (int x = part.target.x0; x < part.target.x1; x++) {
       if (!(*rc_flag(&part.flags, x, y) & RC_TARGET)) continue;
-      memcpy(rc_pixel(s->filled, box.x0 + x, box.y0 + y), rc_pixel(&part.image, x, y),
-             (size_t)part.image.channels * sizeof(float));
-      *rc_flag(&s->flags, box.x0 + x, box.y0 + y) = RC_KNOWN | RC_SOURCE;
-      s->done++;
+      bool missing = shortfall.rest[(size_t)y * (size_t)part.flags.width + (size_t)x] == 2;
+      if (!missing)
+        memcpy(rc_pixel(s->filled, box.x0 + x, box.y0 + y), rc_pixel(&part.image, x, y), bytes);
+      keep(s, box.x0 + x, box.y0 + y, missing);
     }
   s->shortfall.continued += shortfall.continued;
-  s->shortfall.missing += shortfall.missing;
   rc_release(context, mark);
   return RECEDE_OK;
 }
 
 /* Of what was filled at once, the bins from first on stay. */
 static void keep_first(steps *s, int first) {
-  s->shortfall.continued = 0;
+  s->shortfall.continued = s->shortfall.missing = 0;
   for (int y = 0; y < s->flags.height; y++)
-    for (int x = 0; x < s->flags.width; x++) {
-      uint8_t *flag = rc_flag(&s->flags, x, y);
-      if (!(*flag & RC_TARGET) || bin_of(&s->problem->line, x, y) < first) continue;
-      bool rest = s->shortfall.rest[(size_t)y * (size_t)s->flags.width + (size_t)x];
-      *flag = rest ? RC_KNOWN : RC_KNOWN | RC_SOURCE;
-      s->shortfall.continued += rest;
-      s->done++;
-    }
+    for (int x = 0; x < s->flags.width; x++)
+      if (*rc_flag(&s->flags, x, y) & RC_TARGET && bin_of(&s->problem->line, x, y) >= first)
+        keep(s, x, y, true);
 }
 
 static recede_status fill_rest(rc_context *context, steps *s) {
@@ -184,7 +199,7 @@ static recede_status fill_rest(rc_context *context, steps *s) {
     first = farthest(&t);
     if (!sum(t.target, first, BINS)) first = nearest(&t) - REACH_BINS; /* as far as one can */
     if ((double)sum(t.target, 0, first) < LAST_PART * (double)s->targets) first = 0;
-    rc_span(context, .5 + .5 * (double)s->done / (double)s->targets);
+    rc_span(context, FIRST_SHARE + (1 - FIRST_SHARE) * (double)s->done / (double)s->targets, 1);
     RC_TRY(fill_step(context, s, first));
   }
   return RECEDE_OK;
@@ -209,17 +224,22 @@ static void tell(rc_context *context, const rc_shortfall *shortfall) {
 recede_status rc_fill_in_steps(rc_context *context, const rc_problem *problem,
                                const recede_params *params, rc_image *filled) {
   steps s = {.problem = problem, .params = params, .filled = filled, .flags = problem->flags};
+  const rc_line *line = &problem->line;
+  bool frontal = line->a == 0 && line->b == 0;
   tally t;
   RC_TRY(RC_NEW_ZERO(context, (size_t)problem->flags.width * (size_t)problem->flags.height,
                      &s.shortfall.rest));
+  count(line, &problem->flags, &t);
+  s.targets = sum(t.target, 0, BINS);
+  double least = LEAST_REST * (double)s.targets;
+  if (!params->engine_steps || frontal) least = INFINITY;
+  rc_span(context, 0, (double)sum(t.target, 0, farthest(&t)) >= least ? FIRST_SHARE : 1);
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_fill_plane(context, problem, params, filled, &s.shortfall));
   rc_release(context, mark);
-  count(&problem->line, &problem->flags, &t);
-  s.targets = sum(t.target, 0, BINS);
-  if (params->engine_steps && (double)s.shortfall.continued >= LEAST_REST * (double)s.targets)
+  if ((double)(s.shortfall.continued + s.shortfall.missing) >= least)
     RC_TRY(fill_rest(context, &s));
-  rc_span(context, 0);
+  rc_span(context, 0, 1);
   tell(context, &s.shortfall);
   return RECEDE_OK;
 }

@@ -78,6 +78,9 @@ const char *rp_stage_label(const char *stage) {
 }
 
 static char *empty_source(const rp_request *request) {
+  if (request->run == RP_RUN_SYNTHESIZE)
+    return g_strdup(_("Too little of the texture is selected, or opaque, to copy from. Select "
+                      "more."));
   const recede_view *mask = &request->mask;
   gsize left = 0;
   for (int y = 0; y < mask->height; y++)

@@ -201,7 +201,7 @@ static void take_scene(rp_panel *panel, rp_scene scene) {
 /* When what it depends on has changed: how the texture is seen, or the new image's size. */
 static void renew_scene(rp_panel *panel) {
   rp_scene scene;
-  if (!rp_settings_lay(panel->settings) && !rp_scene_is_laid(&panel->scene)) return;
+  if (rp_scene_is_of(&panel->scene, panel->settings)) return;
   rp_draft_clear(&panel->draft);
   stop_estimate(panel);
   if (!rp_scene_new(panel->settings, panel->picture, &scene)) {
@@ -216,7 +216,7 @@ void rp_panel_changed(rp_panel *panel, const char *key) {
   if (panel->setting) return;
   if (strcmp(key, "exemplar") == 0 || strcmp(key, "width") == 0 || strcmp(key, "height") == 0) {
     renew_scene(panel);
-    renew_estimate(panel);
+    if (strcmp(key, "exemplar") == 0) renew_estimate(panel);
   }
   if (strcmp(key, "slant") == 0 || strcmp(key, "tilt") == 0) take_angles(panel);
   if (strcmp(key, "source") == 0) take_source(panel);

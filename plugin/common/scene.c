@@ -22,9 +22,9 @@ static void make_exemplar(rp_proxy *proxy) {
 }
 
 static gboolean new_laid(const rp_settings *settings, const rp_picture *picture, rp_scene *scene) {
-  if (!rp_proxy_new_blank((int)rp_settings_get(settings, "width"),
-                          (int)rp_settings_get(settings, "height"), PROXY_LONGEST_PX,
-                          &scene->proxy))
+  scene->new_width = (int)rp_settings_get(settings, "width");
+  scene->new_height = (int)rp_settings_get(settings, "height");
+  if (!rp_proxy_new_blank(scene->new_width, scene->new_height, PROXY_LONGEST_PX, &scene->proxy))
     return FALSE;
   int longest = MAX(picture->area.width, picture->area.height);
   int shrunk = MAX(1, (int)lround(longest / scene->proxy.shrink));
@@ -53,6 +53,12 @@ gboolean rp_scene_new(const rp_settings *settings, const rp_picture *picture, rp
   if (laid) rp_proxy_centre(&scene->proxy, &scene->centre_x, &scene->centre_y);
   scene->shade_is_old = TRUE;
   return rp_scene_set_angles(scene, 0, 0, 50);
+}
+
+gboolean rp_scene_is_of(const rp_scene *scene, const rp_settings *settings) {
+  if (!rp_settings_lay(settings)) return !rp_scene_is_laid(scene);
+  return rp_scene_is_laid(scene) && scene->new_width == (int)rp_settings_get(settings, "width") &&
+         scene->new_height == (int)rp_settings_get(settings, "height");
 }
 
 gboolean rp_scene_is_laid(const rp_scene *scene) { return scene->texture.rgba != NULL; }

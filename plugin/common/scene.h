@@ -30,6 +30,7 @@ typedef struct {
   /* A texture seen from the front: the proxy is the new image's, blank, and the draft, which is
    * always shown then, has this laid onto the plane. All 0: there is none. */
   rp_proxy texture;
+  int new_width, new_height; /* of the new image; 0 when nothing is laid */
   double centre_x, centre_y; /* of the hole: the grid lies around it */
   recede_plane plane;        /* of the proxy's image */
   rp_show show;
@@ -46,6 +47,8 @@ typedef struct {
  * is copied from; or, when it is to be laid, the new image. FALSE: no memory. */
 gboolean rp_scene_new(const rp_settings *settings, const rp_picture *picture, rp_scene *scene);
 gboolean rp_scene_is_laid(const rp_scene *scene);
+/* It is still what these settings ask for: laid or not, and as large. */
+gboolean rp_scene_is_of(const rp_scene *scene, const rp_settings *settings);
 void rp_scene_clear(rp_scene *scene);
 /* FALSE, and the scene stays as it is: these angles make no plane. */
 gboolean rp_scene_set_angles(rp_scene *scene, double slant_deg, double tilt_deg, double fov_deg);

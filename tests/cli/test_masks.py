@@ -167,6 +167,16 @@ def test_a_source_may_lie_far_away(folder):
         made = read(folder / "out.png")[30:60, 20:60].astype(int)
         red = (made[:, :, 2] - made[:, :, :2].max(axis=2) > 100).mean()
         check(red == 0 and made.std() > 5, method, red, made.std())
+    # So much nearer than the hole that it is filled in steps, from what is filled by then.
+    floor = texture(600, 800)
+    floor[:540] = (0, 0, 255)
+    source = np.zeros((600, 800), np.uint8)
+    source[540:] = 255
+    recede("fill", write(folder / "floor.png", floor), "--mask",
+           write(folder / "hole.png", hole(600, 800, (140, 160, 380, 420))), "--source",
+           write(folder / "near.png", source), "--slant", "75", "--force", "-o", folder / "out.png")
+    made = read(folder / "out.png")[140:160, 380:420].astype(int)
+    check(made.mean() > 30 and made.std() > 5, "steps", made.mean(), made.std())
 
 
 if __name__ == "__main__":

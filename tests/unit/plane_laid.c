@@ -42,35 +42,39 @@ static point laid_at(const recede_plane *plane, point anchor, double right_px, d
   return (point){at.x + across.x * right_px * w / w0, at.y + across.y * right_px * w / w0};
 }
 
+/* Where the line from the middle towards the viewer leaves the picture. */
+static point anchor_of(double tilt_deg) {
+  double turn = tilt_deg * G_PI / 180, dx = -sin(turn), dy = cos(turn);
+  double away = fmin(WIDTH / 2. / fmax(fabs(dx), 1e-9), HEIGHT / 2. / fmax(fabs(dy), 1e-9));
+  return (point){(WIDTH - 1) / 2. + away * dx, (HEIGHT - 1) / 2. + away * dy};
+}
+
 /* Neither turned nor mirrored, 1 px across at the edge nearest to the viewer, foreshortened as the
  * plane is. */
 static void lies_as_the_plane_does(void) {
-  static const struct {
-    double tilt_deg;
-    point anchor;
-  } sides[] = {{0, {(WIDTH - 1) / 2., HEIGHT - 1}},
-               {180, {(WIDTH - 1) / 2., 0}},
-               {90, {0, (HEIGHT - 1) / 2.}},
-               {-90, {WIDTH - 1, (HEIGHT - 1) / 2.}}};
-  for (guint i = 0; i < G_N_ELEMENTS(sides); i++) {
+  static const double tilts_deg[] = {0, 180, 90, -90, 45, -135, 20};
+  for (guint i = 0; i < G_N_ELEMENTS(tilts_deg); i++) {
     task t = task_new(slopes(), "slant=50 exemplar=frontal quality=draft engine-iterations=1");
-    t.params.tilt_deg = sides[i].tilt_deg;
+    t.params.tilt_deg = tilts_deg[i];
     task_synthesize(&t, WIDTH, HEIGHT);
     g_assert_cmpstr(t.message, ==, "");
     g_assert_cmpuint(t.report.peak_bytes, <=, t.report.estimated_bytes);
     static const double pixels[][2] = {{60, 10}, {30, 15},  {90, 15},
                                        {20, 60}, {100, 60}, {60, 100}};
+    int seen = 0;
     for (guint n = 0; n < G_N_ELEMENTS(pixels); n++) {
-      point at = laid_at(&t.report.orientation.plane, sides[i].anchor,
-                         pixels[n][0] - (SIDE - 1) / 2., pixels[n][1]);
+      point at = laid_at(&t.report.orientation.plane, anchor_of(tilts_deg[i]),
+                         pixels[n][0] - (SIDE - 1) / 2., pixels[n][1] + .5);
       int x = (int)lround(at.x), y = (int)lround(at.y);
-      g_test_message("tilt %.0f, pixel %.0f %.0f at %d %d: %.1f %.1f", sides[i].tilt_deg,
-                     pixels[n][0], pixels[n][1], x, y,
-                     (double)picture_get(&t.result, x, y, 0) * SIDE,
+      if (x < 1 || y < 1 || x >= WIDTH - 1 || y >= HEIGHT - 1) continue; /* cut off, obliquely */
+      seen++;
+      g_test_message("tilt %.0f, pixel %.0f %.0f at %d %d: %.1f %.1f", tilts_deg[i], pixels[n][0],
+                     pixels[n][1], x, y, (double)picture_get(&t.result, x, y, 0) * SIDE,
                      (double)picture_get(&t.result, x, y, 1) * SIDE);
       g_assert_cmpfloat(fabs(picture_get(&t.result, x, y, 0) * SIDE - pixels[n][0]), <, 2);
       g_assert_cmpfloat(fabs(picture_get(&t.result, x, y, 1) * SIDE - pixels[n][1]), <, 3);
     }
+    g_assert_cmpint(seen, >=, 4);
     task_clear(&t);
   }
 }
@@ -134,6 +138,29 @@ static void what_tells_no_plane_is_refused(void) {
   }
 }
 
+/* Some pixels are enough; of one none of the result's would be covered. */
+static void small_ones_are_laid(void) {
+  static const int sizes[][2] = {{5, 5}, {40, 4}, {4, 60}, {1, 1}};
+  for (guint i = 0; i < G_N_ELEMENTS(sizes); i++) {
+    picture p = picture_new(sizes[i][0], sizes[i][1], 1, RECEDE_FLOAT);
+    picture_fill(&p, (area){0, 0, sizes[i][0], sizes[i][1]}, .5f);
+    task t = task_new(p, "slant=30 exemplar=frontal quality=draft");
+    task_synthesize(&t, 40, 30);
+    g_test_message("%d x %d: %s %s", sizes[i][0], sizes[i][1], t.message, t.report.warning);
+    if (sizes[i][0] == 1) {
+      g_assert_cmpint(t.status, ==, RECEDE_EMPTY_SOURCE);
+      g_assert_nonnull(strstr(t.message, "the exemplar is too small"));
+    } else {
+      g_assert_cmpstr(t.message, ==, "");
+      picture none = picture_new(40, 30, 1, RECEDE_U8);
+      g_assert_cmpfloat(
+          fabs(moments_of(&t.result, &none, false, (area){0, 0, 40, 30}, 0).mean - .5), <, .01);
+      picture_clear(&none);
+    }
+    task_clear(&t);
+  }
+}
+
 /* Where it is transparent it is filled like the rest, and its colour there is read by nobody. */
 static void transparent_is_filled(void) {
   picture results[2];
@@ -162,6 +189,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/laid/geometry", lies_as_the_plane_does);
   g_test_add_func("/laid/far", texture_goes_on_far_away);
   g_test_add_func("/laid/refused", what_tells_no_plane_is_refused);
+  g_test_add_func("/laid/small", small_ones_are_laid);
   g_test_add_func("/laid/transparent", transparent_is_filled);
   return g_test_run();
 }
