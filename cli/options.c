@@ -277,8 +277,8 @@ static const struct {
     [SCALE_MAP] =
         {"IMAGE|--size WxH -o OUT",
          "Writes how many px a texel of the plane takes at every pixel, for one that is 1 px wide\n"
-         "at the centre. .exr and .tif hold the values (NaN beyond the horizon), formats of 8 bits\n"
-         "a picture: brighter is nearer, a line at every doubling, red beyond the horizon.",
+         "at the centre. .exr and .tif hold the values (NaN beyond the horizon), formats of 8\n"
+         "bits a picture: brighter is nearer, a line at every doubling, red beyond the horizon.",
          "Example:\n"
          "  recede scale-map --size 800x600 --slant 60 --tilt 20 -o scale.exr"},
     [ORIENT] = {"IMAGE",

@@ -27,7 +27,8 @@ laid() {
   build/cli/recede synthesize "$texture" -o "$work/floor.png" --size 640x320 --slant "$2" \
     --exemplar frontal --force
   convert "$texture" -crop 320x320+0+0 +repage "$work/texture.png"
-  convert "$work/texture.png" "$work/floor.png" -bordercolor white -border 4x0 +append "$work/$1.png"
+  convert "$work/texture.png" "$work/floor.png" -bordercolor white -border 4x0 +append \
+    "$work/$1.png"
 }
 
 laid sk_gravel 64

@@ -40,11 +40,13 @@ static void nearer(const recede_plane *plane, double *dx, double *dy) {
   *dx = sine > 0 ? plane->normal[0] / sine : 0, *dy = sine > 0 ? plane->normal[1] / sine : 0;
 }
 
+/* In the border's pixels, so that these are filled and the exemplar has target all around: where it
+ * ended with the picture the bricks' period was found less exactly, and courses drifted. */
 void rc_lay_anchor(const recede_plane *plane, double *x, double *y) {
   double dx, dy, cx = (plane->width - 1) / 2., cy = (plane->height - 1) / 2.;
   nearer(plane, &dx, &dy);
-  double t_x = fabs(dx) > 1e-9 ? (cx + .5) / fabs(dx) : INFINITY;
-  double t_y = fabs(dy) > 1e-9 ? (cy + .5) / fabs(dy) : INFINITY, t = fmin(t_x, t_y);
+  double t_x = fabs(dx) > 1e-9 ? cx / fabs(dx) : INFINITY;
+  double t_y = fabs(dy) > 1e-9 ? cy / fabs(dy) : INFINITY, t = fmin(t_x, t_y);
   *x = isfinite(t) ? cx + t * dx : cx, *y = isfinite(t) ? cy + t * dy : cy;
 }
 

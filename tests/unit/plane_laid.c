@@ -45,7 +45,8 @@ static point laid_at(const recede_plane *plane, point anchor, double right_px, d
 /* Where the line from the middle towards the viewer leaves the picture. */
 static point anchor_of(double tilt_deg) {
   double turn = tilt_deg * G_PI / 180, dx = -sin(turn), dy = cos(turn);
-  double away = fmin(WIDTH / 2. / fmax(fabs(dx), 1e-9), HEIGHT / 2. / fmax(fabs(dy), 1e-9));
+  double away =
+      fmin((WIDTH - 1) / 2. / fmax(fabs(dx), 1e-9), (HEIGHT - 1) / 2. / fmax(fabs(dy), 1e-9));
   return (point){(WIDTH - 1) / 2. + away * dx, (HEIGHT - 1) / 2. + away * dy};
 }
 
