@@ -116,7 +116,7 @@ static void texture_goes_on_far_away(void) {
   double wanted = far_contrast(&truth);
   outcome stepwise = fill_far("engine-steps=1"), at_once = fill_far("engine-steps=0");
   g_test_message("the plane itself: %.2f", wanted);
-  g_assert_cmpfloat(fabs(log(stepwise.contrast / wanted)), <, .6);
+  g_assert_cmpfloat(fabs(log(stepwise.contrast / wanted)), <, .45);
   g_assert_cmpfloat(stepwise.rest, <, .1);
   g_assert_cmpfloat(at_once.rest, >, .3);
   picture_clear(&truth);

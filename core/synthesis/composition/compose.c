@@ -24,9 +24,12 @@
  * not shine, and what is off a little leaves no seam. */
 #define REACH_OF_THINGS_PX 3.f
 #define SWEEPS_OF_THINGS 8
-/* Sources finer than this many px per px, the mean of both directions, are sampled one level
- * coarser. */
+/* Sources finer than this many px per px across the tilt are sampled one level coarser. */
 #define MIP_AT 1.6f
+/* And of a level that is finer still along it so many samples are taken, of one px or a little more
+ * each. By mips that went by the mean of both directions copies got soft across, in patches. */
+#define TAPS_ROUND .4f
+#define MOST_TAPS 8
 
 typedef struct row_sums {
   double change, changes; /* of squares; how many */
@@ -49,16 +52,30 @@ typedef struct composition {
 
 static const int step_x[4] = {-1, 1, 0, 0}, step_y[4] = {0, 0, -1, 1};
 
-/* The texture that a copy puts at (x, y). */
+/* The texture that a copy puts at (x, y). Flat copies are finer along the tilt than across it: mips
+ * go by what is across, and along it the mean of several samples is taken. */
 static void copy_value(const composition *c, rc_copy copy, int x, int y, float *value) {
   const rc_chart *chart = &c->level->chart;
-  rc_place place = rc_copy_place(chart, copy, rc_level_x(c->level, x), rc_level_y(c->level, y));
-  float sx = place.x + chart->x0, sy = place.y + chart->y0, finer = place.ratio;
-  if (!chart->raised) finer *= sqrtf(finer); /* ratio across, ratio^2 along */
+  float at_x = rc_level_x(c->level, x), at_y = rc_level_y(c->level, y), scale = 1.f;
+  rc_place place = rc_copy_place(chart, copy, at_x, at_y);
+  float across = place.ratio, along = chart->raised ? across : across * across;
   int mip = 0;
-  for (; mip + 1 < c->mip_count && finer > MIP_AT; mip++, finer *= .5f)
-    sx = (sx + .5f) * .5f - .5f, sy = (sy + .5f) * .5f - .5f;
-  rc_sample(c->sampler, &c->mips[mip], sx, sy, value);
+  for (; mip + 1 < c->mip_count && across * scale > MIP_AT; mip++) scale *= .5f;
+  int taps = (int)(along * scale + TAPS_ROUND);
+  taps = taps < 1 ? 1 : taps < MOST_TAPS ? taps : MOST_TAPS;
+  float steep = sqrtf(chart->lx * chart->lx + chart->ly * chart->ly), sum[3] = {0, 0, 0};
+  if (chart->raised || !(steep > 0.f)) taps = 1;
+  for (int i = 0; i < taps; i++) {
+    if (taps > 1) {
+      float step = (((float)i + .5f) / (float)taps - .5f) / steep;
+      place = rc_copy_place(chart, copy, at_x + chart->lx * step, at_y + chart->ly * step);
+    }
+    float sx = (place.x + chart->x0 + .5f) * scale - .5f;
+    float sy = (place.y + chart->y0 + .5f) * scale - .5f;
+    rc_sample(c->sampler, &c->mips[mip], sx, sy, value);
+    for (int k = 0; k < c->channels; k++) sum[k] += value[k];
+  }
+  for (int k = 0; k < c->channels; k++) value[k] = sum[k] / (float)taps;
 }
 
 static void sample_row(void *user, int item, int thread) {
