@@ -69,15 +69,14 @@ static rc_band own_scales(const rc_problem *problem) {
   return band;
 }
 
-/* Twice the largest distance of such a pixel from one that is not, which is known up to 255 px. A
- * hole goes on beyond the picture's border, source ends there. */
+/* Twice the largest distance of such a pixel from one that is not, which is known up to 255 px. */
 static recede_status widest(rc_context *context, const rc_mask *flags, uint8_t wanted, int *width) {
   uint8_t *depth;
   int most = 0;
   size_t count = (size_t)flags->width * (size_t)flags->height;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, count, &depth));
-  rc_distance_inside(flags->data, wanted, flags->width, flags->height, wanted == RC_SOURCE, depth);
+  rc_distance_inside(flags->data, wanted, flags->width, flags->height, false, depth);
   for (size_t i = 0; i < count; i++) most = depth[i] > most ? depth[i] : most;
   *width = 2 * most;
   rc_release(context, mark);

@@ -66,11 +66,11 @@ def check_dialog(dialog):
 
 def waits_for_draft(dialog):
     """What the plane has on it then: the grid's lines alone leave most of the picture one grey."""
-    dialog.says("Making a draft", seconds=5)
-    shown = dialog.says("The new image, as a draft", seconds=30)
+    def grey():
+        return (np.ptp(dialog.picture(), axis=2) == 0).mean()
+    shown = wait_for(lambda: "The new image, as a draft" in dialog.status() and grey() < .6, 30)
     dialog.window.screenshot("texture-laid")
-    grey = (np.ptp(dialog.picture(), axis=2) == 0).mean()
-    dialog.tap.case(shown and grey < .6, "the draft is shown", f"{dialog.status()} {grey:.2f}")
+    dialog.tap.case(shown is not None, "the draft is shown", f"{dialog.status()} {grey():.2f}")
 
 
 def check_laid(dialog):
