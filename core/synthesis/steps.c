@@ -9,7 +9,7 @@
 
 /* Steps are worth their time for so much of the target. */
 #define LEAST_REST .01
-/* And take so much longer than the first fill. */
+/* Of the time, when steps follow, the first fill's part: for progress. */
 #define FIRST_SHARE .4
 /* Pixels are sorted by w into bins, eight an octave, 1 in the middle: those of a float's first
  * mantissa bits, so of 1.07 to 1.13 times each. */
