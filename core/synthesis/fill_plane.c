@@ -262,8 +262,8 @@ static recede_status take_tracks(rc_context *context, const rc_descent *e, const
 }
 
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
-                            const recede_params *params, rc_image *filled,
-                            rc_shortfall *shortfall) {
+                            const recede_params *params, rc_image *filled, rc_shortfall *shortfall,
+                            rc_known_rails *known) {
   rc_descent e = {.params = params,
                   .kernels = rc_kernels_select(context->host.kernel),
                   .rest = shortfall->rest};
@@ -289,8 +289,13 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   /* Again, for it is the texture's that counts; what is alike may be too little to tell. */
   RC_TRY(choose_surface(context, problem, &e, &raised));
   e.chart = chart_of(problem, raised);
-  RC_TRY(find_lines(context, &e));
-  RC_TRY(find_regions(context, &e));
+  if (rc_runs(&known->rails)) {
+    e.rails = rc_rails_in_chart(known->rails, &known->chart, &e.chart);
+  } else {
+    RC_TRY(find_lines(context, &e));
+    RC_TRY(find_regions(context, &e));
+    if (!rc_has_sides(&e.sides)) *known = (rc_known_rails){e.rails, e.chart};
+  }
   /* After the lines: a road's own dashes tell whether what crosses the hole repeats. */
   if (params->engine_spots && !problem->synthesis) {
     RC_TRY(rc_drop_spots(context, &band, e.images, e.flags, e.level_count));

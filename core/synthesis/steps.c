@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "synthesis/fill_plane.h"
 
-/* Steps are worth their time for so much of the target. */
+/* Steps are worth their time where so much of the target is far, and as much found no source. */
 #define LEAST_REST .01
 /* Of the time, when steps follow, the first fill's part: for progress. */
 #define FIRST_SHARE .4
@@ -20,6 +20,12 @@
 #define REACH_BINS 6
 /* Sources, of the targets as far away: beside most holes there are more. */
 #define ENOUGH .25
+/* What found no source is tried again where by then there is source enough no more than so many
+ * bins away; if that is such a part of all, and as long as a step fills such a part. Boards are
+ * such that lie to the sides of where the texture ends. */
+#define NEAR_BINS 2
+#define LEAST_AGAIN .01
+#define LEAST_FILLED .02
 /* What is left is done at once when it is less than this part of all: a strip along the horizon,
  * thinner than a patch. */
 #define LAST_PART .03
@@ -37,6 +43,7 @@ typedef struct steps {
   rc_image *filled;
   rc_mask flags; /* of all: what has been filled is a source */
   rc_shortfall shortfall;
+  rc_known_rails rails; /* in a chart of all */
   uint64_t targets, done;
 } steps;
 
@@ -141,13 +148,49 @@ static recede_status cut_out(rc_context *context, const steps *s, rc_box box, in
   return RECEDE_OK;
 }
 
-/* A pixel is filled. first: by the first fill; where that had no source either, it is none. */
-static void keep(steps *s, int x, int y, bool first) {
-  uint8_t rest = first ? s->shortfall.rest[(size_t)y * (size_t)s->flags.width + (size_t)x] : 0;
-  *rc_flag(&s->flags, x, y) = rest ? RC_KNOWN : RC_KNOWN | RC_SOURCE;
-  s->shortfall.continued += rest == 1;
-  s->shortfall.missing += rest == 2;
-  s->done++;
+static uint8_t *rest_at(const steps *s, int x, int y) {
+  return &s->shortfall.rest[(size_t)y * (size_t)s->flags.width + (size_t)x];
+}
+
+/* Bins where by now there is source enough to try again what found none. */
+static void find_again(const steps *s, bool again[BINS]) {
+  tally t;
+  count(&s->problem->line, &s->flags, &t);
+  for (int i = 0; i < BINS; i++) {
+    int from = i < NEAR_BINS ? 0 : i - NEAR_BINS, end = i + NEAR_BINS + 1;
+    again[i] = (double)sum(t.source, from, end) > ENOUGH * (double)sum(t.target, from, end);
+  }
+}
+
+/* Of what was filled, the bins from first on stay, and are sources. What found none stays a target
+ * where it may find one in a later step; else it is what continued says. last: there is none. */
+static void keep(steps *s, int first, bool last, uint8_t continued) {
+  const rc_line *line = &s->problem->line;
+  const rc_mask *flags = &s->flags;
+  bool again[BINS] = {false};
+  uint64_t rest[BINS] = {0}, tried = 0;
+  for (int y = 0; y < flags->height; y++)
+    for (int x = 0; x < flags->width; x++) {
+      int bin = bin_of(line, x, y);
+      if (!(*rc_flag(flags, x, y) & RC_TARGET) || bin < first) continue;
+      if (*rest_at(s, x, y))
+        rest[bin]++;
+      else
+        *rc_flag(flags, x, y) = RC_KNOWN | RC_SOURCE, s->done++;
+    }
+  if (!last) find_again(s, again);
+  for (int i = 0; i < BINS; i++) tried += again[i] ? rest[i] : 0;
+  bool worth = (double)tried >= LEAST_AGAIN * (double)s->targets;
+  for (int y = 0; y < flags->height; y++)
+    for (int x = 0; x < flags->width; x++) {
+      int bin = bin_of(line, x, y);
+      if (!(*rc_flag(flags, x, y) & RC_TARGET) || bin < first || (worth && again[bin])) continue;
+      bool missing = *rest_at(s, x, y) == 2;
+      *rc_flag(flags, x, y) = missing ? RC_KNOWN : continued;
+      s->shortfall.missing += missing;
+      s->shortfall.continued += !missing;
+      s->done++;
+    }
 }
 
 /* Fills the bins of the target from first on. */
@@ -155,6 +198,7 @@ static recede_status fill_step(rc_context *context, steps *s, int first) {
   rc_problem part;
   recede_params params = *s->params;
   rc_shortfall shortfall = {NULL, 0, 0};
+  rc_known_rails rails = s->rails;
   rc_box box = box_of_step(s, first);
   size_t bytes = (size_t)s->filled->channels * sizeof(float);
   rc_block *mark = rc_mark(context);
@@ -162,27 +206,18 @@ static recede_status fill_step(rc_context *context, steps *s, int first) {
   RC_TRY(
       RC_NEW_ZERO(context, (size_t)part.flags.width * (size_t)part.flags.height, &shortfall.rest));
   params.surface = context->report.surface; /* one for all */
-  RC_TRY(rc_fill_plane(context, &part, &params, &part.image, &shortfall));
+  rails.chart.x0 -= (float)box.x0, rails.chart.y0 -= (float)box.y0;
+  RC_TRY(rc_fill_plane(context, &part, &params, &part.image, &shortfall, &rails));
   for (int y = part.target.y0; y < part.target.y1; y++)
     for (int x = part.target.x0; x < part.target.x1; x++) {
       if (!(*rc_flag(&part.flags, x, y) & RC_TARGET)) continue;
-      bool missing = shortfall.rest[(size_t)y * (size_t)part.flags.width + (size_t)x] == 2;
-      if (!missing)
-        memcpy(rc_pixel(s->filled, box.x0 + x, box.y0 + y), rc_pixel(&part.image, x, y), bytes);
-      keep(s, box.x0 + x, box.y0 + y, missing);
+      uint8_t rest = shortfall.rest[(size_t)y * (size_t)part.flags.width + (size_t)x];
+      if (rest == 2) continue; /* it has the first fill's */
+      memcpy(rc_pixel(s->filled, box.x0 + x, box.y0 + y), rc_pixel(&part.image, x, y), bytes);
+      *rest_at(s, box.x0 + x, box.y0 + y) = rest;
     }
-  s->shortfall.continued += shortfall.continued;
   rc_release(context, mark);
   return RECEDE_OK;
-}
-
-/* Of what was filled at once, the bins from first on stay. */
-static void keep_first(steps *s, int first) {
-  s->shortfall.continued = s->shortfall.missing = 0;
-  for (int y = 0; y < s->flags.height; y++)
-    for (int x = 0; x < s->flags.width; x++)
-      if (*rc_flag(&s->flags, x, y) & RC_TARGET && bin_of(&s->problem->line, x, y) >= first)
-        keep(s, x, y, true);
 }
 
 static recede_status fill_rest(rc_context *context, steps *s) {
@@ -190,17 +225,24 @@ static recede_status fill_rest(rc_context *context, steps *s) {
   tally t;
   RC_TRY(rc_mask_new(context, s->flags.width, s->flags.height, &s->flags));
   memcpy(s->flags.data, s->problem->flags.data, (size_t)s->flags.width * (size_t)s->flags.height);
+  s->shortfall.continued = s->shortfall.missing = 0;
   count(line, &s->flags, &t);
   int first = farthest(&t);
-  if (!sum(t.target, 0, first)) return RECEDE_OK; /* what is left is near */
-  keep_first(s, first);
+  /* Large parts that only continue would be seen again; the strips that steps leave would not. */
+  keep(s, first, false, RC_KNOWN);
   while (s->done < s->targets) {
+    uint64_t before = s->done;
     count(line, &s->flags, &t);
-    first = farthest(&t);
-    if (!sum(t.target, first, BINS)) first = nearest(&t) - REACH_BINS; /* as far as one can */
-    if ((double)sum(t.target, 0, first) < LAST_PART * (double)s->targets) first = 0;
+    if (!sum(t.target, first, BINS)) { /* nothing is tried again */
+      first = farthest(&t);
+      if (!sum(t.target, first, BINS)) first = nearest(&t) - REACH_BINS; /* as far as one can */
+      if ((double)sum(t.target, 0, first) < LAST_PART * (double)s->targets) first = 0;
+    }
     rc_span(context, FIRST_SHARE + (1 - FIRST_SHARE) * (double)s->done / (double)s->targets, 1);
     RC_TRY(fill_step(context, s, first));
+    keep(s, first, false, RC_KNOWN | RC_SOURCE);
+    if ((double)(s->done - before) < LEAST_FILLED * (double)s->targets)
+      keep(s, first, true, RC_KNOWN | RC_SOURCE);
   }
   return RECEDE_OK;
 }
@@ -232,12 +274,12 @@ recede_status rc_fill_in_steps(rc_context *context, const rc_problem *problem,
   count(line, &problem->flags, &t);
   s.targets = sum(t.target, 0, BINS);
   double least = LEAST_REST * (double)s.targets;
-  if (!params->engine_steps || frontal) least = INFINITY;
-  rc_span(context, 0, (double)sum(t.target, 0, farthest(&t)) >= least ? FIRST_SHARE : 1);
+  bool far = params->engine_steps && !frontal && (double)sum(t.target, 0, farthest(&t)) >= least;
+  rc_span(context, 0, far ? FIRST_SHARE : 1);
   rc_block *mark = rc_mark(context);
-  RC_TRY(rc_fill_plane(context, problem, params, filled, &s.shortfall));
+  RC_TRY(rc_fill_plane(context, problem, params, filled, &s.shortfall, &s.rails));
   rc_release(context, mark);
-  if ((double)(s.shortfall.continued + s.shortfall.missing) >= least)
+  if (far && (double)(s.shortfall.continued + s.shortfall.missing) >= least)
     RC_TRY(fill_rest(context, &s));
   rc_span(context, 0, 1);
   tell(context, &s.shortfall);

@@ -43,11 +43,11 @@ static point laid_at(const recede_plane *plane, point anchor, double right_px, d
 }
 
 /* Where the line from the middle towards the viewer leaves the picture. */
-static point anchor_of(double tilt_deg) {
+static point anchor_in(double tilt_deg, int width, int height) {
   double turn = tilt_deg * G_PI / 180, dx = -sin(turn), dy = cos(turn);
   double away =
-      fmin((WIDTH - 1) / 2. / fmax(fabs(dx), 1e-9), (HEIGHT - 1) / 2. / fmax(fabs(dy), 1e-9));
-  return (point){(WIDTH - 1) / 2. + away * dx, (HEIGHT - 1) / 2. + away * dy};
+      fmin((width - 1) / 2. / fmax(fabs(dx), 1e-9), (height - 1) / 2. / fmax(fabs(dy), 1e-9));
+  return (point){(width - 1) / 2. + away * dx, (height - 1) / 2. + away * dy};
 }
 
 /* Neither turned nor mirrored, 1 px across at the edge nearest to the viewer, foreshortened as the
@@ -64,7 +64,7 @@ static void lies_as_the_plane_does(void) {
                                        {20, 60}, {100, 60}, {60, 100}};
     int seen = 0;
     for (guint n = 0; n < G_N_ELEMENTS(pixels); n++) {
-      point at = laid_at(&t.report.orientation.plane, anchor_of(tilts_deg[i]),
+      point at = laid_at(&t.report.orientation.plane, anchor_in(tilts_deg[i], WIDTH, HEIGHT),
                          pixels[n][0] - (SIDE - 1) / 2., pixels[n][1] + .5);
       int x = (int)lround(at.x), y = (int)lround(at.y);
       if (x < 1 || y < 1 || x >= WIDTH - 1 || y >= HEIGHT - 1) continue; /* cut off, obliquely */
@@ -120,6 +120,72 @@ static void texture_goes_on_far_away(void) {
   g_assert_cmpfloat(stepwise.rest, <, .1);
   g_assert_cmpfloat(at_once.rest, >, .3);
   picture_clear(&truth);
+}
+
+enum { BOARD = 16, BOARDS = 8 };
+
+/* Boards that run up, each of its own shade, with dark joints at their left. */
+static picture eight_boards(void) {
+  picture p = picture_new(BOARD * BOARDS, BOARD * BOARDS, 3, RECEDE_U8);
+  for (int y = 0; y < BOARD * BOARDS; y++)
+    for (int x = 0; x < BOARD * BOARDS; x++) {
+      int board = x / BOARD, end = (int)floor(y / 90. + noise_at(board, 0, 20));
+      double grain = noise_at(x / 2, y / 20, 21);
+      for (int k = 0; k < 3; k++)
+        picture_set(&p, x, y, k,
+                    x % BOARD < 2 ? .1f
+                                  : (float)(.45 + .25 * noise_at(board, end, 22) + .1 * grain));
+    }
+  return p;
+}
+
+static float darkest_near(const picture *p, double x, double y) {
+  float least = 1;
+  for (int dy = -1; dy <= 1; dy++)
+    for (int dx = -1; dx <= 1; dx++) {
+      int at_x = (int)lround(x) + dx, at_y = (int)lround(y) + dy;
+      bool within = at_x >= 0 && at_y >= 0 && at_x < 2 * WIDTH && at_y < 2 * HEIGHT;
+      if (within) least = fminf(least, picture_get(p, at_x, at_y, 0));
+    }
+  return least;
+}
+
+/* Of the joints where boards of the plane are so many px wide, those that go on for .3 of the way
+ * to the horizon. */
+static double joints_that_go_on(const task *t, double least_px, double most_px) {
+  const recede_plane *plane = &t->report.orientation.plane;
+  double turn = t->params.tilt_deg * G_PI / 180, joints = 0, whole = 0;
+  double away = plane->focal_px / tan(t->params.slant_deg * G_PI / 180);
+  point anchor = anchor_in(t->params.tilt_deg, 2 * WIDTH, 2 * HEIGHT);
+  point end = {WIDTH - .5 + away * sin(turn), HEIGHT - .5 - away * cos(turn)};
+  double w0 = recede_plane_w(plane, anchor.x, anchor.y);
+  for (int y = 0; y < 2 * HEIGHT; y++)
+    for (int x = 0; x < 2 * WIDTH; x++) {
+      double board_px = BOARD * recede_plane_w(plane, x, y) / w0;
+      if (!(board_px > least_px && board_px < most_px)) continue;
+      if (picture_get(&t->result, x, y, 0) > .25f) continue;
+      int dark = 0;
+      for (int n = 1; n <= 3; n++)
+        dark += darkest_near(&t->result, x + .1 * n * (end.x - x), y + .1 * n * (end.y - y)) < .4f;
+      joints++, whole += dark == 3;
+    }
+  return whole / joints;
+}
+
+/* Boards go on to the horizon, and to the sides. */
+static void boards_go_on(void) {
+  static const double tilts_deg[] = {0, 30, 90};
+  for (guint i = 0; i < G_N_ELEMENTS(tilts_deg); i++) {
+    task t = task_new(eight_boards(), "slant=70 exemplar=frontal quality=draft surface=flat");
+    t.params.tilt_deg = tilts_deg[i];
+    task_synthesize(&t, 2 * WIDTH, 2 * HEIGHT);
+    g_assert_cmpstr(t.message, ==, "");
+    double near = joints_that_go_on(&t, 11, 16), far = joints_that_go_on(&t, 7, 11);
+    g_test_message("tilt %.0f: %.2f near, %.2f far", tilts_deg[i], near, far);
+    g_assert_cmpfloat(near, >, .75);
+    g_assert_cmpfloat(far, >, .75);
+    task_clear(&t);
+  }
 }
 
 static void what_tells_no_plane_is_refused(void) {
@@ -189,6 +255,7 @@ int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/laid/geometry", lies_as_the_plane_does);
   g_test_add_func("/laid/far", texture_goes_on_far_away);
+  g_test_add_func("/laid/boards", boards_go_on);
   g_test_add_func("/laid/refused", what_tells_no_plane_is_refused);
   g_test_add_func("/laid/small", small_ones_are_laid);
   g_test_add_func("/laid/transparent", transparent_is_filled);

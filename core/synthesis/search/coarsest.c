@@ -26,10 +26,12 @@
 #define FAVOUR_OF_LATTICE 1.3
 /* What comes from another board is not what this one shows again and again beside the hole. */
 #define FAVOUR_OF_BOARDS 1.25
-/* Moves along the rails are of so many px and more, nearest first, as many as whole.c looks at; and
- * so many target pixels may find nothing along them: they go on from what lies beside them. Of a
- * pier as wide as its source mask that is .02, at its far end. */
+/* Moves along the rails are of so many px and more, nearest first, as many as whole.c looks at,
+ * each also across by up to so many rows; and so many target pixels more than by other moves may
+ * find nothing along them: they go on from what lies beside them. Of a pier as wide as its source
+ * mask that is .02, at its far end. */
 #define LEAST_MOVE_PX 6
+#define WHOLE_ROWS 6
 #define MOST_WITHOUT_COPY .06
 /* Boards have so many times the copies, for each has its own. */
 #define EACH_BOARD 3
@@ -104,7 +106,8 @@ static double price_of_broken_lines(const rc_descent *e, rc_level *level, const 
          (1 - rc_lines_kept(level, e->lines, e->line_count, e->level_count - 1));
 }
 
-static bool nearly_all_have_copies(const rc_level *level) {
+/* The part of the targets that has no copy. */
+static double without_copy(const rc_level *level) {
   int targets = 0, without = 0;
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
@@ -112,20 +115,21 @@ static bool nearly_all_have_copies(const rc_level *level) {
       targets++;
       without += isnan(level->field[rc_level_at(level, x, y)].a);
     }
-  return without <= MOST_WITHOUT_COPY * targets;
+  return targets ? (double)without / targets : 0;
 }
 
 static recede_status moves_along(rc_context *context, const rc_descent *e, const rc_level *level,
                                  const rc_copy **moves, int *count) {
   rc_copy *made;
   rc_rails rails = rc_rails_coarser(e->rails, e->level_count - 1);
-  int each = 2 * (2 * rails.rows + 1), most = level->width + level->height - LEAST_MOVE_PX;
+  int rows = rails.rows < WHOLE_ROWS ? rails.rows : WHOLE_ROWS;
+  int each = 2 * (2 * rows + 1), most = level->width + level->height - LEAST_MOVE_PX;
   if (most > RC_WHOLE_CANDIDATES / each) most = RC_WHOLE_CANDIDATES / each;
   *count = 0;
   RC_TRY(RC_NEW(context, each * most, &made));
   for (int px = LEAST_MOVE_PX; px < LEAST_MOVE_PX + most; px++)
     for (int sign = -1; sign <= 1; sign += 2)
-      for (int row = -rails.rows; row <= rails.rows; row++) {
+      for (int row = -rows; row <= rows; row++) {
         float along = (float)(sign * px), across = (float)row * rails.gauge;
         made[(*count)++] =
             rc_copy_of_move(&level->chart, 0.f, 0.f, along * rails.a - across * rails.b,
@@ -135,25 +139,25 @@ static recede_status moves_along(rc_context *context, const rc_descent *e, const
   return RECEDE_OK;
 }
 
-/* Starts that keep to the rails, from the trial first on; *own: what the best of them, which the
- * level then holds, costs. */
+/* Starts that keep to the rails, from the trial first on. without: of targets, by other starts;
+ * *own: what the best of them, which the level then holds, costs. */
 static recede_status start_on_rails(rc_context *context, const rc_descent *e, int first, int count,
-                                    rc_pace *p, rc_level *level, rc_workspace *scratch,
-                                    rc_trial *best, double *own) {
+                                    double without, rc_pace *p, rc_level *level,
+                                    rc_workspace *scratch, rc_trial *best, double *own) {
   starts s = {first, first, first + count, NULL, 0};
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
   RC_TRY(try_starts(context, e, &s, p, level, scratch, best, own));
   *own += price_of_broken_lines(e, level, best);
-  if (!nearly_all_have_copies(level)) *own = INFINITY;
+  if (without_copy(level) > without + MOST_WITHOUT_COPY) *own = INFINITY;
   return RECEDE_OK;
 }
 
 /* Along the rails alone and, where boards have one width, board by board. misfit: of the best start
- * so far. */
+ * so far, which the level holds. */
 static recede_status try_rails(rc_context *context, rc_descent *e, int first, int count, rc_pace *p,
                                rc_level *level, rc_workspace *scratch, double misfit) {
   rc_trial along, across;
-  double own, own_across = INFINITY;
+  double own, own_across = INFINITY, without = without_copy(level);
   int rows = e->rails.rows;
   RC_TRY(rc_trial_new(context, level, &along));
   RC_TRY(rc_trial_new(context, level, &across));
@@ -161,9 +165,10 @@ static recede_status try_rails(rc_context *context, rc_descent *e, int first, in
   uint8_t *board = level->board;
   e->on_rails = true;
   if (rows)
-    RC_TRY(start_on_rails(context, e, first, count, p, level, scratch, &across, &own_across));
+    RC_TRY(
+        start_on_rails(context, e, first, count, without, p, level, scratch, &across, &own_across));
   e->rails.rows = 0, level->board = NULL;
-  RC_TRY(start_on_rails(context, e, first, count, p, level, scratch, &along, &own));
+  RC_TRY(start_on_rails(context, e, first, count, without, p, level, scratch, &along, &own));
   if (rows && own_across < FAVOUR_OF_BOARDS * own) {
     own = own_across;
     e->rails.rows = rows, level->board = board;
@@ -243,6 +248,7 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(try_starts(context, e, &by_chance, &p, level, scratch, &best, &misfit));
   if (e->line_count) misfit += price_of_broken_lines(e, level, &best);
+  if (on_rails) rc_trial_restore(level, &best);
   if (on_rails) RC_TRY(try_rails(context, e, trials, on_rails, &p, level, scratch, misfit));
   if (in_lattice) RC_TRY(try_lattice(context, e, trials, in_lattice, &p, level, scratch, misfit));
   if (e->line_count && !e->on_rails && !e->on_lattice)

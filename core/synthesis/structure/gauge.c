@@ -23,6 +23,9 @@
 #define MOST_GAUGE_PX 96
 #define LEAST_LIKENESS .5
 #define MOST_ROWS 6
+/* So many where no more can be seen than are alike: a texture narrower than the plane it is laid
+ * on. */
+#define ROWS_OF_NARROW 64
 /* Each multiple is looked for so near to where the one before it puts it. */
 #define DRIFT_PX 1
 
@@ -62,7 +65,7 @@ static recede_status collect(rc_context *context, const rc_image *image, const r
   return RECEDE_OK;
 }
 
-/* The joints' correlation with themselves moved by so many bins; 0 where fewer than that are seen
+/* The joints' correlation with themselves moved by so many bins; NAN where fewer than that are seen
  * twice. */
 static double likeness(const joints *j, int lag) {
   double ab = 0, aa = 1e-12, bb = 1e-12, seen = 0;
@@ -71,15 +74,15 @@ static double likeness(const joints *j, int lag) {
     if (isnan(a) || isnan(b)) continue;
     ab += a * b, aa += a * a, bb += b * b, seen++;
   }
-  return seen < lag ? 0 : ab / sqrt(aa * bb);
+  return seen < lag ? NAN : ab / sqrt(aa * bb);
 }
 
-/* The likeness and place of the best lag from least to most. */
+/* The likeness and place of the best lag from least to most; NAN: too little is seen. */
 static double best_lag(const joints *j, int least, int most, int *lag) {
-  double best = -1;
+  double best = NAN;
   for (int i = least; i <= most; i++) {
     double here = likeness(j, i);
-    if (here > best) best = here, *lag = i;
+    if (here > best || (isnan(best) && !isnan(here))) best = here, *lag = i;
   }
   return best;
 }
@@ -127,7 +130,9 @@ recede_status rc_gauge_find(rc_context *context, const rc_image *images, const r
     rails->rows = 1, rails->gauge = (float)lag;
     for (int n = 2; n <= MOST_ROWS; n++) {
       int about = (int)(rails->gauge * (float)n + .5f);
-      if (best_lag(&j, about - drift, about + drift, &lag) < LEAST_LIKENESS) break;
+      double alike = best_lag(&j, about - drift, about + drift, &lag);
+      if (isnan(alike)) rails->rows = ROWS_OF_NARROW;
+      if (!(alike >= LEAST_LIKENESS)) break;
       rails->rows = n, rails->gauge = (float)lag / (float)n;
     }
     float unit = (float)(1 << level) / BINS_PER_PX;

@@ -158,6 +158,25 @@ static rc_rails median_of(const rc_chart *chart, const rc_crossing *lines, int c
   return turned((rc_rails){.a = first.a, .b = first.b}, median);
 }
 
+/* With q = X / w in one chart and q' in the other, u the old w of the new origin, which is D away,
+ *   q' = u (q + D (l . q)) - u D,   q = (q' - D (l . q') / u + D) / u */
+rc_rails rc_rails_in_chart(rc_rails rails, const rc_chart *from, const rc_chart *to) {
+  float dx = to->x0 - from->x0, dy = to->y0 - from->y0;
+  float unit = 1.f + from->lx * dx + from->ly * dy;
+  float drift = from->lx * rails.a + from->ly * rails.b;
+  rc_rails r = rails;
+  r.a += dx * drift, r.b += dy * drift;
+  float length = sqrtf(r.a * r.a + r.b * r.b);
+  r.a /= length, r.b /= length;
+  /* Of a joint n . q = j: (n - (n . D) l / u) . q' / u = j - n . D / u. */
+  float nd = rails.a * dy - rails.b * dx;
+  float na = (-rails.b - nd * from->lx / unit) / unit, nb = (rails.a - nd * from->ly / unit) / unit;
+  float across = sqrtf(na * na + nb * nb);
+  r.gauge /= across;
+  r.joint = (r.joint - nd / unit) / across;
+  return r;
+}
+
 rc_copy rc_copy_of_move(const rc_chart *chart, float x, float y, float a, float b) {
   rc_copy move = {a, b, 0.f};
   rc_chart flat = rc_chart_flat(*chart);

@@ -25,6 +25,9 @@ static inline rc_rails rc_rails_coarser(rc_rails rails, int exponent) {
   return rails;
 }
 
+/* The same rails of the plane in another chart of it, px of the same level. */
+rc_rails rc_rails_in_chart(rc_rails rails, const rc_chart *from, const rc_chart *to);
+
 /* The copy that takes target (x, y) where moving the plane by (a, b) takes it; a = NAN: beyond the
  * horizon. */
 rc_copy rc_copy_of_move(const rc_chart *chart, float x, float y, float a, float b);
