@@ -345,6 +345,6 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int ch
   uint64_t descent = levels + (last > detail ? last : detail);
   /* Before it, of the coarsest level. */
   uint64_t kin = RC_KIN_BYTES_PER_PX * (pixels < RC_MOST_LOOKED_AT ? pixels : RC_MOST_LOOKED_AT);
-  uint64_t steps = pixels * (4 * c + 4);
+  uint64_t steps = pixels * (4 * c + 5);
   return pyramid + conditions + (descent > kin ? descent : kin) + steps + ((uint64_t)4 << 20);
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "synthesis/fill_plane.h"
 
 /* Steps are worth their time where so much of the target is far, and as much found no source. */
@@ -29,8 +30,8 @@
 /* What is left is done at once when it is less than this part of all: a strip along the horizon,
  * thinner than a patch. */
 #define LAST_PART .03
-/* A step looks at what is up to so many times nearer than what it fills. */
-#define LOOKED_AT 3.
+/* A step looks at what is up to so many bins, three times, nearer than what it fills. */
+#define BINS_LOOKED_AT 13
 #define LEAST_MARGIN_PX 16
 
 typedef struct tally {
@@ -42,28 +43,36 @@ typedef struct steps {
   const recede_params *params;
   rc_image *filled;
   rc_mask flags; /* of all: what has been filled is a source */
+  rc_mask bins;  /* the bin of each pixel */
   rc_shortfall shortfall;
   rc_known_rails rails; /* in a chart of all */
   uint64_t targets, done;
 } steps;
 
-static int bin_of(const rc_line *line, int x, int y) {
+static uint8_t bin_of(const rc_line *line, int x, int y) {
   const uint32_t one = 0x3f800000;
   float w = (float)rc_w(line, x, y);
   uint32_t bits;
   if (!(w > 0)) return 0;
   memcpy(&bits, &w, sizeof bits);
   int bin = (int)(bits >> BIN_SHIFT) - (int)(one >> BIN_SHIFT) + BINS / 2;
-  return bin < 0 ? 0 : bin < BINS ? bin : BINS - 1;
+  return (uint8_t)(bin < 0 ? 0 : bin < BINS ? bin : BINS - 1);
 }
 
-static void count(const rc_line *line, const rc_mask *flags, tally *t) {
+static void sort_row(void *user, int y, int thread) {
+  steps *s = user;
+  (void)thread;
+  for (int x = 0; x < s->flags.width; x++)
+    *rc_flag(&s->bins, x, y) = bin_of(&s->problem->line, x, y);
+}
+
+static void count(const steps *s, tally *t) {
   memset(t, 0, sizeof *t);
-  for (int y = 0; y < flags->height; y++)
-    for (int x = 0; x < flags->width; x++) {
-      uint8_t flag = *rc_flag(flags, x, y);
+  for (int y = 0; y < s->flags.height; y++)
+    for (int x = 0; x < s->flags.width; x++) {
+      uint8_t flag = *rc_flag(&s->flags, x, y);
       if (!(flag & (RC_TARGET | RC_SOURCE))) continue;
-      (flag & RC_TARGET ? t->target : t->source)[bin_of(line, x, y)]++;
+      (flag & RC_TARGET ? t->target : t->source)[*rc_flag(&s->bins, x, y)]++;
     }
 }
 
@@ -95,22 +104,15 @@ static int nearest(const tally *t) {
 
 /* What is looked at to fill the target's bins from first on: up to some times nearer, and so far
  * that there is source. */
-static rc_box box_of_step(const steps *s, int first) {
+static rc_box box_of_step(const steps *s, const tally *t) {
   const rc_mask *flags = &s->flags;
-  rc_line line = s->problem->line;
   rc_box box = {flags->width, flags->height, 0, 0};
-  double most = 0, source = INFINITY;
+  int source = 0;
+  while (source < BINS - 1 && !t->source[source]) source++;
+  int most = (nearest(t) > source ? nearest(t) : source) + BINS_LOOKED_AT;
   for (int y = 0; y < flags->height; y++)
     for (int x = 0; x < flags->width; x++) {
-      uint8_t flag = *rc_flag(flags, x, y);
-      double w = rc_w(&line, x, y);
-      if (flag & RC_TARGET && bin_of(&line, x, y) >= first) most = fmax(most, w);
-      if (flag & RC_SOURCE) source = fmin(source, w);
-    }
-  most = LOOKED_AT * fmax(most, source);
-  for (int y = 0; y < flags->height; y++)
-    for (int x = 0; x < flags->width; x++) {
-      if (!*rc_flag(flags, x, y) || rc_w(&line, x, y) > most) continue;
+      if (!*rc_flag(flags, x, y) || *rc_flag(&s->bins, x, y) > most) continue;
       if (x < box.x0) box.x0 = x;
       if (x >= box.x1) box.x1 = x + 1;
       if (y < box.y0) box.y0 = y;
@@ -136,7 +138,7 @@ static recede_status cut_out(rc_context *context, const steps *s, rc_box box, in
         memcpy(rc_pixel(&part->image, x, y), rc_pixel(s->filled, box.x0 + x, box.y0 + y),
                (size_t)channels * sizeof(float));
       if (!(*flag & RC_TARGET)) continue;
-      if (bin_of(&s->problem->line, box.x0 + x, box.y0 + y) < first)
+      if (*rc_flag(&s->bins, box.x0 + x, box.y0 + y) < first)
         *flag = 0; /* a later step's */
       else
         sum_x += x, sum_y += y, targets++;
@@ -155,7 +157,7 @@ static uint8_t *rest_at(const steps *s, int x, int y) {
 /* Bins where by now there is source enough to try again what found none. */
 static void find_again(const steps *s, bool again[BINS]) {
   tally t;
-  count(&s->problem->line, &s->flags, &t);
+  count(s, &t);
   for (int i = 0; i < BINS; i++) {
     int from = i < NEAR_BINS ? 0 : i - NEAR_BINS, end = i + NEAR_BINS + 1;
     again[i] = (double)sum(t.source, from, end) > ENOUGH * (double)sum(t.target, from, end);
@@ -165,13 +167,12 @@ static void find_again(const steps *s, bool again[BINS]) {
 /* Of what was filled, the bins from first on stay, and are sources. What found none stays a target
  * where it may find one in a later step; else it is what continued says. last: there is none. */
 static void keep(steps *s, int first, bool last, uint8_t continued) {
-  const rc_line *line = &s->problem->line;
   const rc_mask *flags = &s->flags;
   bool again[BINS] = {false};
   uint64_t rest[BINS] = {0}, tried = 0;
   for (int y = 0; y < flags->height; y++)
     for (int x = 0; x < flags->width; x++) {
-      int bin = bin_of(line, x, y);
+      int bin = *rc_flag(&s->bins, x, y);
       if (!(*rc_flag(flags, x, y) & RC_TARGET) || bin < first) continue;
       if (*rest_at(s, x, y))
         rest[bin]++;
@@ -183,7 +184,7 @@ static void keep(steps *s, int first, bool last, uint8_t continued) {
   bool worth = (double)tried >= LEAST_AGAIN * (double)s->targets;
   for (int y = 0; y < flags->height; y++)
     for (int x = 0; x < flags->width; x++) {
-      int bin = bin_of(line, x, y);
+      int bin = *rc_flag(&s->bins, x, y);
       if (!(*rc_flag(flags, x, y) & RC_TARGET) || bin < first || (worth && again[bin])) continue;
       bool missing = *rest_at(s, x, y) == 2;
       *rc_flag(flags, x, y) = missing ? RC_KNOWN : continued;
@@ -194,12 +195,12 @@ static void keep(steps *s, int first, bool last, uint8_t continued) {
 }
 
 /* Fills the bins of the target from first on. */
-static recede_status fill_step(rc_context *context, steps *s, int first) {
+static recede_status fill_step(rc_context *context, steps *s, const tally *t, int first) {
   rc_problem part;
   recede_params params = *s->params;
   rc_shortfall shortfall = {NULL, 0, 0};
   rc_known_rails rails = s->rails;
-  rc_box box = box_of_step(s, first);
+  rc_box box = box_of_step(s, t);
   size_t bytes = (size_t)s->filled->channels * sizeof(float);
   rc_block *mark = rc_mark(context);
   RC_TRY(cut_out(context, s, box, first, &part));
@@ -221,25 +222,26 @@ static recede_status fill_step(rc_context *context, steps *s, int first) {
 }
 
 static recede_status fill_rest(rc_context *context, steps *s) {
-  const rc_line *line = &s->problem->line;
   tally t;
   RC_TRY(rc_mask_new(context, s->flags.width, s->flags.height, &s->flags));
   memcpy(s->flags.data, s->problem->flags.data, (size_t)s->flags.width * (size_t)s->flags.height);
   s->shortfall.continued = s->shortfall.missing = 0;
-  count(line, &s->flags, &t);
+  count(s, &t);
   int first = farthest(&t);
   /* Large parts that only continue would be seen again; the strips that steps leave would not. */
   keep(s, first, false, RC_KNOWN);
   while (s->done < s->targets) {
     uint64_t before = s->done;
-    count(line, &s->flags, &t);
+    RC_TRY(rc_poll(context));
+    count(s, &t);
     if (!sum(t.target, first, BINS)) { /* nothing is tried again */
       first = farthest(&t);
       if (!sum(t.target, first, BINS)) first = nearest(&t) - REACH_BINS; /* as far as one can */
       if ((double)sum(t.target, 0, first) < LAST_PART * (double)s->targets) first = 0;
     }
     rc_span(context, FIRST_SHARE + (1 - FIRST_SHARE) * (double)s->done / (double)s->targets, 1);
-    RC_TRY(fill_step(context, s, first));
+    RC_TRY(rc_poll(context));
+    RC_TRY(fill_step(context, s, &t, first));
     keep(s, first, false, RC_KNOWN | RC_SOURCE);
     if ((double)(s->done - before) < LEAST_FILLED * (double)s->targets)
       keep(s, first, true, RC_KNOWN | RC_SOURCE);
@@ -266,12 +268,13 @@ static void tell(rc_context *context, const rc_shortfall *shortfall) {
 recede_status rc_fill_in_steps(rc_context *context, const rc_problem *problem,
                                const recede_params *params, rc_image *filled) {
   steps s = {.problem = problem, .params = params, .filled = filled, .flags = problem->flags};
-  const rc_line *line = &problem->line;
-  bool frontal = line->a == 0 && line->b == 0;
+  int width = problem->flags.width, height = problem->flags.height;
+  bool frontal = problem->line.a == 0 && problem->line.b == 0;
   tally t;
-  RC_TRY(RC_NEW_ZERO(context, (size_t)problem->flags.width * (size_t)problem->flags.height,
-                     &s.shortfall.rest));
-  count(line, &problem->flags, &t);
+  RC_TRY(RC_NEW_ZERO(context, (size_t)width * (size_t)height, &s.shortfall.rest));
+  RC_TRY(rc_mask_new(context, width, height, &s.bins));
+  RC_TRY(rc_parallel(context, height, sort_row, &s));
+  count(&s, &t);
   s.targets = sum(t.target, 0, BINS);
   double least = LEAST_REST * (double)s.targets;
   bool far = params->engine_steps && !frontal && (double)sum(t.target, 0, farthest(&t)) >= least;

@@ -7,6 +7,8 @@
 #define TRIES 8
 /* Sources are drawn from this part of them that is nearest to the target's size. */
 #define NEAREST_PART 8
+/* A cancel is looked for after so many pixels. */
+#define POLLED_PX 4096
 
 typedef struct rest {
   rc_level *level;
@@ -58,10 +60,11 @@ static bool lacks(const rc_level *level, int x, int y) {
          isnan(level->field[rc_level_at(level, x, y)].a);
 }
 
-static void spread(rest *r) {
+static recede_status spread(rc_context *context, rest *r) {
   static const int dx[4] = {-1, 1, 0, 0}, dy[4] = {0, 0, -1, 1};
   rc_level *level = r->level;
   while (r->begin < r->end) {
+    if (r->begin % POLLED_PX == 0) RC_TRY(rc_poll(context));
     int32_t pixel = r->queue[r->begin++];
     int x = pixel % level->width, y = pixel / level->width;
     rc_copy copy = level->field[rc_level_at(level, x, y)];
@@ -75,6 +78,7 @@ static void spread(rest *r) {
         give(r, nx, ny, drawn);
     }
   }
+  return RECEDE_OK;
 }
 
 recede_status rc_continue_rest(rc_context *context, rc_level *level, uint64_t key, uint8_t *marked,
@@ -96,14 +100,16 @@ recede_status rc_continue_rest(rc_context *context, rc_level *level, uint64_t ke
     for (int x = level->box.x0; x < level->box.x1; x++)
       if (rc_level_is_target(level, x, y) && !lacks(level, x, y))
         r.queue[r.end++] = y * level->width + x;
-  spread(&r);
-  for (int y = level->box.y0; y < level->box.y1; y++)
+  RC_TRY(spread(context, &r));
+  for (int y = level->box.y0; y < level->box.y1; y++) {
+    RC_TRY(rc_poll(context));
     for (int x = level->box.x0; x < level->box.x1; x++) {
       rc_copy drawn;
       if (!lacks(level, x, y) || !draw(&r, x, y, &drawn)) continue;
       give(&r, x, y, drawn);
-      spread(&r);
+      RC_TRY(spread(context, &r));
     }
+  }
   rc_release(context, mark);
   if (!sorted) level->order = NULL;
   return RECEDE_OK;
