@@ -21,6 +21,13 @@
  * the trend says nothing. */
 #define LEAST_EXPLAINED_BESIDE -.1
 #define BESIDE_OF_HOLE .25
+/* Where more than half of the hole lies beyond the box of the sources, as when a picture is
+ * extended, copies come from one side only, and what a trend has of things and not of light tints
+ * them: there it must explain such a part of what differs from place to place. Textures in a light
+ * that drifts by half and more .92 .. .998, photos of streets, piers, dunes and roofs .62 .. .88.
+ */
+#define MOST_BEYOND .5
+#define LEAST_EXPLAINED_BEYOND .91
 /* Enough for six decimals of a trend. */
 #define MOST_SAMPLES 400000
 #define TERMS RC_TONE_TERMS
@@ -141,6 +148,38 @@ static double explained_nearby(const rc_image *image, const rc_mask *flags, cons
   return all > 0 ? (all - left) / all : 0;
 }
 
+/* Part of what differs between the places of the sources' box that the trend explains. */
+static double explained_by_places(const rc_image *image, const rc_mask *flags, const rc_band *band,
+                                  const rc_tone *tone) {
+  place places[PLACES][PLACES], sum = {0, {0, 0, 0}, {0, 0, 0}};
+  const place *first = places[0];
+  double all = 0, left = 0;
+  memset(places, 0, sizeof places);
+  sum_places(image, flags, band, &tone->box, tone, places);
+  for (int i = 0; i < PLACES * PLACES; i++) {
+    sum.count += first[i].count;
+    for (int k = 0; k < tone->channels; k++) sum.value[k] += first[i].value[k];
+  }
+  for (int i = 0; i < PLACES * PLACES; i++)
+    for (int k = 0; k < tone->channels && first[i].count > 0; k++) {
+      double value = first[i].value[k] / first[i].count, mean = sum.value[k] / sum.count;
+      double trend = first[i].trend[k] / first[i].count;
+      all += first[i].count * (value - mean) * (value - mean);
+      left += first[i].count * (value - trend) * (value - trend);
+    }
+  return all > 0 ? (all - left) / all : 0;
+}
+
+static bool lies_beyond(const rc_mask *flags, const rc_box *box) {
+  double target = 0, beyond = 0;
+  for (int y = 0; y < flags->height; y++)
+    for (int x = 0; x < flags->width; x++) {
+      if (!(*rc_flag(flags, x, y) & RC_TARGET)) continue;
+      target++, beyond += x < box->x0 || x >= box->x1 || y < box->y0 || y >= box->y1;
+    }
+  return beyond > MOST_BEYOND * target;
+}
+
 static bool explains_what_is_nearby(const rc_image *image, const rc_mask *flags,
                                     const rc_band *band, const rc_tone *tone) {
   rc_box hole = rc_box_of(flags, RC_TARGET);
@@ -168,7 +207,9 @@ void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *ban
       rc_substitute(TERMS, s.product[0], tone->terms[k]);
     }
     if (explained(tone, &s, count) >= LEAST_EXPLAINED &&
-        explains_what_is_nearby(image, flags, band, tone))
+        explains_what_is_nearby(image, flags, band, tone) &&
+        (!lies_beyond(flags, &tone->box) ||
+         explained_by_places(image, flags, band, tone) >= LEAST_EXPLAINED_BEYOND))
       return;
   }
   memset(tone->terms, 0, sizeof tone->terms);

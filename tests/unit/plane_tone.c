@@ -82,6 +82,53 @@ static void sky_tints_no_floor(void) {
   task_clear(&t);
 }
 
+/* A pavement that becomes a road to the right, and water where it is far; or a pavement alone, in
+ * light that grows to the right. */
+static picture pavement(bool alone) {
+  static const double colours[3][3] = {{.62, .5, .44}, {.42, .42, .43}, {.3, .42, .6}};
+  picture p = picture_new(320, 240, 3, RECEDE_U8);
+  for (int y = 0; y < 240; y++)
+    for (int x = 0; x < 320; x++) {
+      double water = alone ? 0 : fmin(fmax((95 - y) / 50., 0), 1);
+      double road = alone ? 0 : fmin(fmax((x + y / 2 - 210) / 80., 0), 1);
+      double light = alone ? .5 + x / 320. : 1, grain = .12 * (noise_at(x / 2, y / 2, 11) - .5);
+      for (int k = 0; k < 3; k++) {
+        double ground = colours[0][k] + road * (colours[1][k] - colours[0][k]);
+        double colour = ground + water * (colours[2][k] - ground);
+        picture_set(&p, x, y, k, (float)(light * (colour + grain)));
+      }
+    }
+  return p;
+}
+
+/* What differs most in any channel between what a picture is extended by and what it has beside
+ * that. */
+static double tint_beyond(bool alone, area filled, area beside) {
+  double most = 0;
+  task t = task_new(pavement(alone), "quality=draft orientation=frontal");
+  task_hole(&t, (area){0, 0, 60, 240});
+  picture_fill(&t.mask, (area){0, 190, 320, 240}, 1);
+  task_succeeds(&t);
+  for (int k = 0; k < 3; k++)
+    most = fmax(most, fabs(moments_of(&t.result, &t.mask, true, filled, k).mean -
+                           moments_of(&t.result, &t.mask, false, beside, k).mean));
+  task_clear(&t);
+  return most;
+}
+
+/* Of a picture that is extended the things it shows make no light; light does. */
+static void things_tint_nothing_beyond(void) {
+  static const area corner = {0, 190, 60, 240}, left = {0, 80, 60, 180},
+                    bottom = {70, 192, 110, 236};
+  double things = fmax(tint_beyond(false, corner, (area){60, 150, 120, 190}),
+                       tint_beyond(false, left, (area){60, 80, 100, 180}));
+  double light = fmax(tint_beyond(true, left, (area){60, 80, 66, 180}),
+                      tint_beyond(true, bottom, (area){70, 150, 110, 190}));
+  g_test_message("by things %.3f, in light that drifts %.3f", things, light);
+  g_assert_cmpfloat(things, <, .01);
+  g_assert_cmpfloat(light, <, .02);
+}
+
 #define TILE_PX 48
 /* Tiles with dark joints; those of the third column are brighter. */
 static picture tiles(void) {
@@ -340,6 +387,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/tone/tracks", tracks_go_on);
   g_test_add_func("/tone/strong-bands", only_faint_tracks_are_led);
   g_test_add_func("/tone/sky", sky_tints_no_floor);
+  g_test_add_func("/tone/beyond", things_tint_nothing_beyond);
   g_test_add_func("/tone/tiles", tiles_keep_their_tone);
   g_test_add_func("/tone/step", steps_stay);
   g_test_add_func("/tone/cut", cut_things_do_not_shine);
