@@ -290,7 +290,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(choose_surface(context, problem, &e, &raised));
   e.chart = chart_of(problem, raised);
   if (rc_runs(&known->rails)) {
-    e.rails = rc_rails_in_chart(known->rails, &known->chart, &e.chart);
+    e.rails = rc_rails_in_chart(known, &e.chart);
   } else {
     RC_TRY(find_lines(context, &e));
     RC_TRY(find_regions(context, &e));

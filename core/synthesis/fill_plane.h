@@ -3,7 +3,6 @@
 #define RECEDE_SYNTHESIS_FILL_PLANE_H
 
 #include "synthesis/problem.h"
-#include "synthesis/structure/rails.h"
 
 /* Target pixels that no source is right for. */
 typedef struct rc_shortfall {
@@ -12,17 +11,13 @@ typedef struct rc_shortfall {
   uint64_t missing;   /* have the smooth tone alone */
 } rc_shortfall;
 
-/* Rails of the plane, in a chart of the problem's. */
-typedef struct rc_known_rails {
-  rc_rails rails;
-  rc_chart chart;
-} rc_known_rails;
+struct rc_known_rails; /* of structure/rails.h */
 
 /* As problem.h says of all methods. Of the other pixels known ones are as before, but for rounding.
  * Adds to what the report has of magnified pixels, those of the rest left out. known: the rails
  * are taken from there if they run, and else looked for and put there. */
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                             const recede_params *params, rc_image *filled, rc_shortfall *shortfall,
-                            rc_known_rails *known);
+                            struct rc_known_rails *known);
 
 #endif

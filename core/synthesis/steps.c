@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "synthesis/fill_plane.h"
+#include "synthesis/structure/rails.h"
 
 /* Steps are worth their time where so much of the target is far, and as much found no source. */
 #define LEAST_REST .01

@@ -160,7 +160,9 @@ static rc_rails median_of(const rc_chart *chart, const rc_crossing *lines, int c
 
 /* With q = X / w in one chart and q' in the other, u the old w of the new origin, which is D away,
  *   q' = u (q + D (l . q)) - u D,   q = (q' - D (l . q') / u + D) / u */
-rc_rails rc_rails_in_chart(rc_rails rails, const rc_chart *from, const rc_chart *to) {
+rc_rails rc_rails_in_chart(const rc_known_rails *known, const rc_chart *to) {
+  const rc_chart *from = &known->chart;
+  rc_rails rails = known->rails;
   float dx = to->x0 - from->x0, dy = to->y0 - from->y0;
   float unit = 1.f + from->lx * dx + from->ly * dy;
   float drift = from->lx * rails.a + from->ly * rails.b;

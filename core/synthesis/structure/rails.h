@@ -25,8 +25,14 @@ static inline rc_rails rc_rails_coarser(rc_rails rails, int exponent) {
   return rails;
 }
 
-/* The same rails of the plane in another chart of it, px of the same level. */
-rc_rails rc_rails_in_chart(rc_rails rails, const rc_chart *from, const rc_chart *to);
+/* Rails of the finest level, and the chart that they are told in. */
+typedef struct rc_known_rails {
+  rc_rails rails;
+  rc_chart chart;
+} rc_known_rails;
+
+/* The same in another chart of the plane. */
+rc_rails rc_rails_in_chart(const rc_known_rails *known, const rc_chart *chart);
 
 /* The copy that takes target (x, y) where moving the plane by (a, b) takes it; a = NAN: beyond the
  * horizon. */
