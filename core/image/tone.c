@@ -17,9 +17,9 @@
 #define PLACES 8
 /* And beside the hole, so much of its longer side away, it must not do this harm: a dark pier
  * between bright water is light to both sides by a trend, but dark by itself. Photos whose light
- * drifts -.06 .. .22, a pier between water and a dune below the sky -.14 and -.21. Of other depths
- * the trend says nothing. */
-#define LEAST_EXPLAINED_BESIDE -.1
+ * drifts -.03 .. .22, two piers between water and a dune below the sky -.06, -.14 and -.21. Of
+ * other depths the trend says nothing. */
+#define LEAST_EXPLAINED_BESIDE -.04
 #define BESIDE_OF_HOLE .25
 /* Where more than half of the hole lies beyond the box of the sources, as when a picture is
  * extended, copies come from one side only, and what a trend has of things and not of light tints

@@ -336,7 +336,8 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int ch
   /* Of the coarser levels, 1/3 of the finest, only the fields stay; the coarsest alone has sources
    * in order, but it may be the only one. */
   uint64_t levels = pixels * (4 + 1 + 1 + 4) + box * (12 + 4 + 1 + 1) * 4 / 3;
-  uint64_t search = box * (12 + 4 + 4) * 2 + pixels * (4 + 1) + cuts;
+  /* Trials, too: the coarsest level may be the only one. */
+  uint64_t search = box * (12 + 4 + 4) * 3 + pixels * (4 + 1) + cuts;
   uint64_t pads = rows * (40 * c + 20) + 16 * c * (columns + 5);
   uint64_t composition = box * (12 * c + 4) + pads;
   uint64_t detail = (grown < pixels ? grown : pixels) * (12 * c + 1) + pixels;

@@ -214,12 +214,19 @@ static recede_status fill_step(rc_context *context, steps *s, const tally *t, in
     for (int x = part.target.x0; x < part.target.x1; x++) {
       if (!(*rc_flag(&part.flags, x, y) & RC_TARGET)) continue;
       uint8_t rest = shortfall.rest[(size_t)y * (size_t)part.flags.width + (size_t)x];
-      if (rest == 2) continue; /* it has the first fill's */
+      if (rest == 2) continue; /* it has an earlier fill's */
       memcpy(rc_pixel(s->filled, box.x0 + x, box.y0 + y), rc_pixel(&part.image, x, y), bytes);
       *rest_at(s, box.x0 + x, box.y0 + y) = rest;
     }
   rc_release(context, mark);
   return RECEDE_OK;
+}
+
+/* Of progress, for so many pixels. */
+static void share_of_step(rc_context *context, const steps *s, uint64_t pixels) {
+  double each = (1 - FIRST_SHARE) / (double)s->targets;
+  double from = FIRST_SHARE + each * (double)s->done;
+  rc_span(context, from, from + each * (double)pixels);
 }
 
 static recede_status fill_rest(rc_context *context, steps *s) {
@@ -240,7 +247,7 @@ static recede_status fill_rest(rc_context *context, steps *s) {
       if (!sum(t.target, first, BINS)) first = nearest(&t) - REACH_BINS; /* as far as one can */
       if ((double)sum(t.target, 0, first) < LAST_PART * (double)s->targets) first = 0;
     }
-    rc_span(context, FIRST_SHARE + (1 - FIRST_SHARE) * (double)s->done / (double)s->targets, 1);
+    share_of_step(context, s, sum(t.target, first, BINS));
     RC_TRY(rc_poll(context));
     RC_TRY(fill_step(context, s, &t, first));
     keep(s, first, false, RC_KNOWN | RC_SOURCE);

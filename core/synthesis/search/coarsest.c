@@ -74,6 +74,14 @@ static recede_status try_starts(rc_context *context, const rc_descent *e, const 
   int iterations = rc_iterations_at(e, exponent), part = first_part(iterations);
   rc_trial *trials;
   double *misfits;
+  if (count == 1) { /* of large levels: no room for more */
+    RC_TRY(start_once(context, e, s, s->first, level));
+    RC_TRY(rc_iterate(context, e, exponent, s->first, 0, iterations, p, level, scratch));
+    *least = rc_misfit(level);
+    rc_trial_save(level, best);
+    return RECEDE_OK;
+  }
+  rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, count, &trials));
   RC_TRY(RC_NEW(context, count, &misfits));
   for (int n = 0; n < count; n++) {
@@ -96,6 +104,7 @@ static recede_status try_starts(rc_context *context, const rc_descent *e, const 
     *least = misfit;
     rc_trial_save(level, best);
   }
+  rc_release(context, mark);
   return RECEDE_OK;
 }
 
@@ -148,7 +157,8 @@ static recede_status start_on_rails(rc_context *context, const rc_descent *e, in
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
   RC_TRY(try_starts(context, e, &s, p, level, scratch, best, own));
   *own += price_of_broken_lines(e, level, best);
-  if (without_copy(level) > without + MOST_WITHOUT_COPY) *own = INFINITY;
+  double most = fmin(without + MOST_WITHOUT_COPY, .5 * (1 + without)); /* an empty one fits well */
+  if (without_copy(level) > most) *own = INFINITY;
   return RECEDE_OK;
 }
 

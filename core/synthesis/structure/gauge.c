@@ -23,9 +23,8 @@
 #define MOST_GAUGE_PX 96
 #define LEAST_LIKENESS .5
 #define MOST_ROWS 6
-/* So many where no more can be seen than are alike: a texture narrower than the plane it is laid
- * on. */
-#define ROWS_OF_NARROW 64
+/* Where so many are alike, or as many as can be seen, all are. */
+#define ALL_ROWS 4096
 /* Each multiple is looked for so near to where the one before it puts it. */
 #define DRIFT_PX 1
 
@@ -118,6 +117,7 @@ static float place_of_joints(const joints *j, double gauge) {
 recede_status rc_gauge_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                             int levels, const rc_chart *chart, rc_rails *rails) {
   joints j;
+  bool all = false;
   int level = levels > FINER_BY ? levels - 1 - FINER_BY : 0;
   int drift = DRIFT_PX * BINS_PER_PX, lag = 0;
   rc_block *mark = rc_mark(context);
@@ -131,10 +131,12 @@ recede_status rc_gauge_find(rc_context *context, const rc_image *images, const r
     for (int n = 2; n <= MOST_ROWS; n++) {
       int about = (int)(rails->gauge * (float)n + .5f);
       double alike = best_lag(&j, about - drift, about + drift, &lag);
-      if (isnan(alike)) rails->rows = ROWS_OF_NARROW;
+      all = isnan(alike);
       if (!(alike >= LEAST_LIKENESS)) break;
       rails->rows = n, rails->gauge = (float)lag / (float)n;
+      all = n == MOST_ROWS;
     }
+    if (all) rails->rows = ALL_ROWS;
     float unit = (float)(1 << level) / BINS_PER_PX;
     rails->joint = unit * place_of_joints(&j, rails->gauge);
     rails->gauge *= unit;

@@ -79,11 +79,16 @@ static rc_box near_hole(const rc_mask *flags) {
 /* Points within the box. beside: only where its distance is positive; NULL: all. */
 static void set_view(const rc_image *image, const rc_mask *flags, rc_chart chart, rc_box box,
                      const rc_boundary *beside, view *v) {
+  rc_box sources = rc_box_of(flags, RC_SOURCE); /* they may be few, of a large picture */
+  rc_box within = {
+      box.x0 > sources.x0 ? box.x0 : sources.x0, box.y0 > sources.y0 ? box.y0 : sources.y0,
+      box.x1 < sources.x1 ? box.x1 : sources.x1, box.y1 < sources.y1 ? box.y1 : sources.y1};
   *v = (view){image, flags, rc_chart_flat(chart), INFINITY, 0, {0}};
+  if (within.x1 <= within.x0 || within.y1 <= within.y0) return;
   for (uint32_t n = 0; n < TRIES && v->count < POINTS; n++) {
     uint64_t bits = rc_random(rc_key(0, 97, 0), n, 0, 0);
-    int x = box.x0 + (int)rc_below((uint32_t)bits, (uint32_t)(box.x1 - box.x0));
-    int y = box.y0 + (int)rc_below((uint32_t)(bits >> 32), (uint32_t)(box.y1 - box.y0));
+    int x = within.x0 + (int)rc_below((uint32_t)bits, (uint32_t)(within.x1 - within.x0));
+    int y = within.y0 + (int)rc_below((uint32_t)(bits >> 32), (uint32_t)(within.y1 - within.y0));
     float px = (float)x - chart.x0, py = (float)y - chart.y0,
           w = 1.f + chart.lx * px + chart.ly * py;
     if (beside && !(beside->nx * px + beside->ny * py + beside->at > 0)) continue;
