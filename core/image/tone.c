@@ -45,7 +45,7 @@ static void basis(const rc_tone *tone, int px, int py, double terms[TERMS]) {
 
 /* The normal equations: the sources' terms with each other, and with each channel's values. */
 typedef struct sums {
-  double product[TERMS][TERMS], value[3][TERMS], square;
+  double product[TERMS][TERMS], value[3][TERMS], square, count;
 } sums;
 
 static void add(sums *s, const double terms[TERMS], const float *pixel, int channels) {
@@ -189,6 +189,25 @@ static bool explains_what_is_nearby(const rc_image *image, const rc_mask *flags,
          explained_nearby(image, flags, band, &beside, tone) >= LEAST_EXPLAINED_BESIDE;
 }
 
+/* Light makes all colours brighter alike: of the trends that part is kept which the mean colour
+ * has, else red hens to the right of a lawn make its grass reddish there. middle: means of the
+ * terms. */
+static void keep_light(rc_tone *tone, const sums *s, const double middle[TERMS]) {
+  double colour[3], square = 0, count = s->count;
+  for (int k = 0; k < tone->channels; k++)
+    colour[k] = s->value[k][0] / count, square += colour[k] * colour[k];
+  for (int i = 1; i < TERMS; i++) {
+    double light = 0;
+    for (int k = 0; k < tone->channels; k++) light += colour[k] * tone->terms[k][i];
+    for (int k = 0; k < tone->channels; k++)
+      tone->terms[k][i] = square > 0 ? colour[k] * light / square : 0;
+  }
+  for (int k = 0; k < tone->channels; k++) {
+    tone->terms[k][0] = colour[k];
+    for (int i = 1; i < TERMS; i++) tone->terms[k][0] -= tone->terms[k][i] * middle[i];
+  }
+}
+
 void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *band, bool drift,
                  rc_tone *tone) {
   sums s;
@@ -199,13 +218,16 @@ void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *ban
   tone->half_width = image->width / 2., tone->half_height = image->height / 2.;
   gather(image, flags, band, tone, &s);
   if (!(s.product[0][0] > 0)) gather(image, flags, band = NULL, tone, &s);
-  double count = s.product[0][0];
+  double count = s.count = s.product[0][0];
   if (!(count > 0)) return;
+  double middle[TERMS]; /* the terms' means */
+  for (int i = 0; i < TERMS; i++) middle[i] = s.product[i][0] / count;
   if (drift && rc_factor(TERMS, s.product[0])) {
     for (int k = 0; k < tone->channels; k++) {
       memcpy(tone->terms[k], s.value[k], sizeof s.value[k]);
       rc_substitute(TERMS, s.product[0], tone->terms[k]);
     }
+    keep_light(tone, &s, middle);
     if (explained(tone, &s, count) >= LEAST_EXPLAINED &&
         explains_what_is_nearby(image, flags, band, tone) &&
         (!lies_beyond(flags, &tone->box) ||

@@ -129,6 +129,54 @@ static void things_tint_nothing_beyond(void) {
   g_assert_cmpfloat(light, <, .02);
 }
 
+/* Even from one lattice point, 24 px apart, to the next. */
+static double blotches_at(int x, int y, int n) {
+  int i = x / 24, j = y / 24;
+  double s = x / 24. - i, t = y / 24. - j;
+  return (1 - t) * ((1 - s) * noise_at(i, j, n) + s * noise_at(i + 1, j, n)) +
+         t * ((1 - s) * noise_at(i, j + 1, n) + s * noise_at(i + 1, j + 1, n));
+}
+
+/* A lawn with patches of red flowers, ever more to the right. */
+static picture lawn(int n) {
+  static const double green[3] = {.3, .5, .2}, red[3] = {.7, .2, .16};
+  picture p = picture_new(320, 240, 3, RECEDE_U8);
+  for (int y = 0; y < 240; y++)
+    for (int x = 0; x < 320; x++) {
+      double part = fmin(fmax(6 * (blotches_at(x, y, n) + .6 * x / 320 - .85) + .5, 0), 1);
+      double grain = .1 * (noise_at(x / 2, y / 2, 11) - .5);
+      for (int k = 0; k < 3; k++)
+        picture_set(&p, x, y, k, (float)(green[k] + part * (red[k] - green[k]) + grain));
+    }
+  return p;
+}
+
+/* Of the lawn, masked or not, the part that is no pure green. */
+static double tinted(const picture *p, const picture *mask, bool inside) {
+  double tints = 0, count = 0;
+  for (int y = 0; y < 240; y++)
+    for (int x = 0; x < 320; x++) {
+      double hue = picture_get(p, x, y, 0) / fmax(picture_get(p, x, y, 1), .01);
+      if ((picture_get(mask, x, y, 0) > .5f) == inside && hue < .9) count++, tints += hue > .66;
+    }
+  return tints / count;
+}
+
+/* Red flowers do not make the lawn beside them reddish: that is no light. */
+static void colours_are_no_light(void) {
+  double most = 0;
+  for (int n = 0; n < 4; n++) {
+    task t = task_new(lawn(20 + n), "quality=draft orientation=frontal");
+    task_hole(&t, (area){90, 60, 200, 180});
+    task_succeeds(&t);
+    double got = tinted(&t.result, &t.mask, true), known = tinted(&t.result, &t.mask, false);
+    g_test_message("%d: tinted %.3f of the hole, %.3f beside it", n, got, known);
+    most = fmax(most, got - known);
+    task_clear(&t);
+  }
+  g_assert_cmpfloat(most, <, .15);
+}
+
 #define TILE_PX 48
 /* Tiles with dark joints; those of the third column are brighter. */
 static picture tiles(void) {
@@ -388,6 +436,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/tone/strong-bands", only_faint_tracks_are_led);
   g_test_add_func("/tone/sky", sky_tints_no_floor);
   g_test_add_func("/tone/beyond", things_tint_nothing_beyond);
+  g_test_add_func("/tone/colours", colours_are_no_light);
   g_test_add_func("/tone/tiles", tiles_keep_their_tone);
   g_test_add_func("/tone/step", steps_stay);
   g_test_add_func("/tone/cut", cut_things_do_not_shine);
