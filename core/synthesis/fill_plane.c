@@ -291,10 +291,10 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   e.chart = chart_of(problem, raised);
   if (rc_runs(&known->rails)) {
     e.rails = rc_rails_in_chart(known, &e.chart);
+    e.keep_rails = known->kept;
   } else {
     RC_TRY(find_lines(context, &e));
     RC_TRY(find_regions(context, &e));
-    if (!rc_has_sides(&e.sides)) *known = (rc_known_rails){e.rails, e.chart};
   }
   /* After the lines: a road's own dashes tell whether what crosses the hole repeats. */
   if (params->engine_spots && !problem->synthesis) {
@@ -313,6 +313,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   RC_TRY(rc_descend(context, &e, &finest));
+  if (!rc_runs(&known->rails) && !rc_has_sides(&e.sides))
+    *known = (rc_known_rails){e.rails, e.chart, e.on_rails};
   context->report.surface = e.chart.raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;
   RC_TRY(rc_stage(context, "composition", .8, .93));
   RC_TRY(compose(context, &e, &finest, filled));

@@ -33,6 +33,8 @@
 #define LEAST_MOVE_PX 6
 #define WHOLE_ROWS 6
 #define MOST_WITHOUT_COPY .06
+/* Where an earlier fill kept to the rails, the rest is tried again later. */
+#define MOST_WITHOUT_KEPT .5
 /* Boards have so many times the copies, for each has its own. */
 #define EACH_BOARD 3
 
@@ -162,6 +164,25 @@ static recede_status start_on_rails(rc_context *context, const rc_descent *e, in
   return RECEDE_OK;
 }
 
+/* As start_on_rails, without anything to compare with. False: for too many targets there is nothing
+ * on them. */
+static recede_status keep_to_rails(rc_context *context, rc_descent *e, int count, rc_level *level,
+                                   rc_workspace *scratch, bool *kept) {
+  rc_pace p = {0, work_of(count, rc_iterations_at(e, e->level_count - 1))};
+  starts s = {0, 0, count, NULL, 0};
+  rc_trial best;
+  double own;
+  RC_TRY(rc_trial_new(context, level, &best));
+  RC_TRY(rc_boards_mark(context, &e->rails, e->level_count - 1, level));
+  RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
+  e->on_rails = true;
+  RC_TRY(try_starts(context, e, &s, &p, level, scratch, &best, &own));
+  rc_trial_restore(level, &best);
+  *kept = e->on_rails = without_copy(level) <= MOST_WITHOUT_KEPT;
+  if (!*kept) level->board = NULL;
+  return RECEDE_OK;
+}
+
 /* Along the rails alone and, where boards have one width, board by board. misfit: of the best start
  * so far, which the level holds. */
 static recede_status try_rails(rc_context *context, rc_descent *e, int first, int count, rc_pace *p,
@@ -244,6 +265,11 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   int rails_tried = e->rails.rows ? 2 : 1;
   int in_lattice = rc_has_lattice(&e->lattice) && !on_rails && plain > 1 ? half : 0;
   if (in_lattice) plain = half;
+  if (on_rails && e->keep_rails) {
+    bool kept;
+    RC_TRY(keep_to_rails(context, e, on_rails, level, scratch, &kept));
+    if (kept) return RECEDE_OK;
+  }
   int trials = plain + with_lines, whole = e->params->engine_whole ? with_lines / 2 : 0;
   starts by_chance = {0, plain, plain, NULL, 0};
   starts along_lines = {plain, trials - whole, trials, NULL, 0};

@@ -28,6 +28,7 @@ typedef struct rc_descent {
   rc_crossing lines[RC_MOST_LINES]; /* px of the finest level */
   int line_count;
   rc_rails rails;
+  bool keep_rails; /* an earlier fill of the same plane did: other starts need not be tried */
   rc_conditions conditions;                  /* of the finest level */
   rc_sides sides;                            /* of the finest level */
   bool on_rails, on_lattice, continue_lines; /* starts that kept to them fitted well enough */

@@ -25,10 +25,11 @@ static inline rc_rails rc_rails_coarser(rc_rails rails, int exponent) {
   return rails;
 }
 
-/* Rails of the finest level, and the chart that they are told in. */
+/* Rails of the finest level, the chart that they are told in, and whether a fill kept to them. */
 typedef struct rc_known_rails {
   rc_rails rails;
   rc_chart chart;
+  bool kept;
 } rc_known_rails;
 
 /* The same in another chart of the plane. */
