@@ -28,6 +28,11 @@ rc_box rc_box_of(const rc_mask *mask, int wanted) {
   return box.x1 ? box : (rc_box){0, 0, 0, 0};
 }
 
+rc_box rc_box_common(rc_box a, rc_box b) {
+  return (rc_box){a.x0 > b.x0 ? a.x0 : b.x0, a.y0 > b.y0 ? a.y0 : b.y0, a.x1 < b.x1 ? a.x1 : b.x1,
+                  a.y1 < b.y1 ? a.y1 : b.y1};
+}
+
 rc_box rc_box_grown(rc_box box, int px, int width, int height) {
   return (rc_box){box.x0 > px ? box.x0 - px : 0, box.y0 > px ? box.y0 - px : 0,
                   box.x1 + px < width ? box.x1 + px : width,

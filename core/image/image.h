@@ -30,6 +30,8 @@ recede_status rc_mask_new(rc_context *context, int width, int height, rc_mask *m
 rc_box rc_box_of(const rc_mask *mask, int wanted);
 /* So many px larger to each side, inside width x height. */
 rc_box rc_box_grown(rc_box box, int px, int width, int height);
+/* What both hold; x1 <= x0 or y1 <= y0: nothing. */
+rc_box rc_box_common(rc_box a, rc_box b);
 static inline int rc_longer_side(rc_box box) {
   int width = box.x1 - box.x0, height = box.y1 - box.y0;
   return width > height ? width : height;

@@ -24,8 +24,8 @@
 /* Where more than half of the hole lies beyond the box of the sources, as when a picture is
  * extended, copies come from one side only, and what a trend has of things and not of light tints
  * them: there it must explain such a part of what differs from place to place. Textures in a light
- * that drifts by half and more .92 .. .998, photos of streets, piers, dunes and roofs .62 .. .88.
- */
+ * that drifts by half and more .92 .. .998, photos of streets, piers, dunes and roofs
+ * .62 .. .88. */
 #define MOST_BEYOND .5
 #define LEAST_EXPLAINED_BEYOND .91
 /* Light makes all colours brighter alike, or nearly: where more than this part of what trends
@@ -175,23 +175,27 @@ static double explained_by_places(const rc_image *image, const rc_mask *flags, c
   return all > 0 ? (all - left) / all : 0;
 }
 
-static bool lies_beyond(const rc_mask *flags, const rc_box *box) {
-  double target = 0, beyond = 0;
-  for (int y = 0; y < flags->height; y++)
-    for (int x = 0; x < flags->width; x++) {
+static bool lies_beyond(const rc_mask *flags, const rc_box *hole, const rc_box *box) {
+  int64_t target = 0, within_box = 0;
+  if (hole->x0 >= box->x0 && hole->y0 >= box->y0 && hole->x1 <= box->x1 && hole->y1 <= box->y1)
+    return false;
+  for (int y = hole->y0; y < hole->y1; y++)
+    for (int x = hole->x0; x < hole->x1; x++) {
       if (!(*rc_flag(flags, x, y) & RC_TARGET)) continue;
-      target++, beyond += x < box->x0 || x >= box->x1 || y < box->y0 || y >= box->y1;
+      target++, within_box += x >= box->x0 && x < box->x1 && y >= box->y0 && y < box->y1;
     }
-  return beyond > MOST_BEYOND * target;
+  return (double)(target - within_box) > MOST_BEYOND * (double)target;
 }
 
-static bool explains_what_is_nearby(const rc_image *image, const rc_mask *flags,
-                                    const rc_band *band, const rc_tone *tone) {
+static bool is_light(const rc_image *image, const rc_mask *flags, const rc_band *band,
+                     const rc_tone *tone) {
   rc_box hole = rc_box_of(flags, RC_TARGET);
   int px = (int)(BESIDE_OF_HOLE * rc_longer_side(hole));
   rc_box beside = rc_box_grown(hole, px, flags->width, flags->height);
   return explained_nearby(image, flags, band, &tone->box, tone) >= LEAST_EXPLAINED_NEARBY &&
-         explained_nearby(image, flags, band, &beside, tone) >= LEAST_EXPLAINED_BESIDE;
+         explained_nearby(image, flags, band, &beside, tone) >= LEAST_EXPLAINED_BESIDE &&
+         (!lies_beyond(flags, &hole, &tone->box) ||
+          explained_by_places(image, flags, band, tone) >= LEAST_EXPLAINED_BEYOND);
 }
 
 /* By how much the trends spread the samples, squared. */
@@ -207,17 +211,19 @@ static double spread_of(const rc_tone *tone, const sums *s) {
   return spread;
 }
 
-/* Of trends that are coloured the part that the mean colour has. */
+/* Takes from coloured trends all but what lies along the mean colour. Where that is negative, as
+ * floats may be, it is no colour. */
 static void keep_light(rc_tone *tone, const sums *s) {
   double colour[3], square = 0, count = s->product[0][0];
   rc_tone light = *tone;
-  for (int k = 0; k < tone->channels; k++)
+  for (int k = 0; k < tone->channels; k++) {
     colour[k] = s->value[k][0] / count, square += colour[k] * colour[k];
+    if (tone->channels == 1 || !(colour[k] > 0)) return;
+  }
   for (int i = 1; i < TERMS; i++) {
     double sum = 0;
     for (int k = 0; k < tone->channels; k++) sum += colour[k] * tone->terms[k][i];
-    for (int k = 0; k < tone->channels; k++)
-      light.terms[k][i] = square > 0 ? colour[k] * sum / square : 0;
+    for (int k = 0; k < tone->channels; k++) light.terms[k][i] = colour[k] * sum / square;
   }
   for (int k = 0; k < tone->channels; k++) {
     light.terms[k][0] = colour[k];
@@ -239,18 +245,15 @@ void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *ban
   if (!(s.product[0][0] > 0)) gather(image, flags, band = NULL, tone, &s);
   double count = s.product[0][0];
   if (!(count > 0)) return;
-  sums factored = s;
-  if (drift && rc_factor(TERMS, factored.product[0])) {
+  double factored[TERMS][TERMS];
+  memcpy(factored, s.product, sizeof factored);
+  if (drift && rc_factor(TERMS, factored[0])) {
     for (int k = 0; k < tone->channels; k++) {
       memcpy(tone->terms[k], s.value[k], sizeof s.value[k]);
-      rc_substitute(TERMS, factored.product[0], tone->terms[k]);
+      rc_substitute(TERMS, factored[0], tone->terms[k]);
     }
     keep_light(tone, &s);
-    if (explained(tone, &s, count) >= LEAST_EXPLAINED &&
-        explains_what_is_nearby(image, flags, band, tone) &&
-        (!lies_beyond(flags, &tone->box) ||
-         explained_by_places(image, flags, band, tone) >= LEAST_EXPLAINED_BEYOND))
-      return;
+    if (explained(tone, &s, count) >= LEAST_EXPLAINED && is_light(image, flags, band, tone)) return;
   }
   memset(tone->terms, 0, sizeof tone->terms);
   for (int k = 0; k < tone->channels; k++) tone->terms[k][0] = s.value[k][0] / count;

@@ -17,11 +17,12 @@ typedef struct rc_tone {
   int channels;
 } rc_tone;
 
-/* Least squares over the SOURCE pixels of the band, or where it holds none over all. The trend is
- * used where it explains a good part of their variance and of the differences between neighbouring
- * places, as a step between two things does not, and does no harm beside the TARGET pixels; and, if
- * these lie mostly beyond the sources, of nearly all that differs from place to place. Else, and
- * with drift false, the tone is their mean. */
+/* Least squares over the SOURCE pixels of the band, or where it holds none over all; of trends that
+ * are coloured only what lies along the mean colour. The trend is used where it explains a good
+ * part of their variance and of the differences between neighbouring places, as a step between two
+ * things does not, and does no harm beside the TARGET pixels; and, if these lie mostly beyond the
+ * sources, of nearly all that differs from place to place. Else, and with drift false, the tone is
+ * their mean. */
 void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *band, bool drift,
                  rc_tone *tone);
 bool rc_tone_drifts(const rc_tone *tone);

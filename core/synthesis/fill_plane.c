@@ -312,9 +312,10 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                             params->engine_light && frontal, &e.conditions));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
+  rc_rails found = e.rails;
   RC_TRY(rc_descend(context, &e, &finest));
   if (!rc_runs(&known->rails) && !rc_has_sides(&e.sides))
-    *known = (rc_known_rails){e.rails, e.chart, e.on_rails};
+    *known = (rc_known_rails){e.on_rails ? e.rails : found, e.chart, e.on_rails};
   context->report.surface = e.chart.raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;
   RC_TRY(rc_stage(context, "composition", .8, .93));
   RC_TRY(compose(context, &e, &finest, filled));

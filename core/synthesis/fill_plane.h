@@ -15,7 +15,8 @@ struct rc_known_rails; /* of structure/rails.h */
 
 /* As problem.h says of all methods. Of the other pixels known ones are as before, but for rounding.
  * Adds to what the report has of magnified pixels, those of the rest left out. known: the rails
- * are taken from there if they run, and else looked for and put there. */
+ * are taken from there if they run, and else looked for and put there, with
+ * whether the fill kept to them. */
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                             const recede_params *params, rc_image *filled, rc_shortfall *shortfall,
                             struct rc_known_rails *known);

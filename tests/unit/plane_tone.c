@@ -85,18 +85,16 @@ static void sky_tints_no_floor(void) {
 /* A pavement that becomes a road to the right, and water where it is far; or a pavement alone, in
  * light that grows to the right. */
 static picture pavement(bool alone) {
-  static const double colours[3][3] = {{.62, .5, .44}, {.42, .42, .43}, {.3, .42, .6}};
+  static const double greys[3] = {.62, .38, .25}; /* as of a photo without colours */
   picture p = picture_new(320, 240, 3, RECEDE_U8);
   for (int y = 0; y < 240; y++)
     for (int x = 0; x < 320; x++) {
       double water = alone ? 0 : fmin(fmax((95 - y) / 50., 0), 1);
       double road = alone ? 0 : fmin(fmax((x + y / 2 - 210) / 80., 0), 1);
       double light = alone ? .5 + x / 320. : 1, grain = .12 * (noise_at(x / 2, y / 2, 11) - .5);
-      for (int k = 0; k < 3; k++) {
-        double ground = colours[0][k] + road * (colours[1][k] - colours[0][k]);
-        double colour = ground + water * (colours[2][k] - ground);
-        picture_set(&p, x, y, k, (float)(light * (colour + grain)));
-      }
+      double ground = greys[0] + road * (greys[1] - greys[0]);
+      double grey = ground + water * (greys[2] - ground);
+      for (int k = 0; k < 3; k++) picture_set(&p, x, y, k, (float)(light * (grey + grain)));
     }
   return p;
 }

@@ -159,7 +159,8 @@ static recede_status start_on_rails(rc_context *context, const rc_descent *e, in
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
   RC_TRY(try_starts(context, e, &s, p, level, scratch, best, own));
   *own += price_of_broken_lines(e, level, best);
-  double most = fmin(without + MOST_WITHOUT_COPY, .5 * (1 + without)); /* an empty one fits well */
+  /* Where few had a copy before half of these must have: an empty start fits well. */
+  double most = fmin(without + MOST_WITHOUT_COPY, .5 * (1 + without));
   if (without_copy(level) > most) *own = INFINITY;
   return RECEDE_OK;
 }
@@ -172,14 +173,16 @@ static recede_status keep_to_rails(rc_context *context, rc_descent *e, int count
   starts s = {0, 0, count, NULL, 0};
   rc_trial best;
   double own;
-  RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(rc_boards_mark(context, &e->rails, e->level_count - 1, level));
+  rc_block *mark = rc_mark(context);
+  RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
   e->on_rails = true;
   RC_TRY(try_starts(context, e, &s, &p, level, scratch, &best, &own));
   rc_trial_restore(level, &best);
+  rc_release(context, mark);
   *kept = e->on_rails = without_copy(level) <= MOST_WITHOUT_KEPT;
-  if (!*kept) level->board = NULL;
+  if (!*kept && level->board) RC_FREE(context, &level->board);
   return RECEDE_OK;
 }
 

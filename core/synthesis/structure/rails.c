@@ -76,19 +76,16 @@ static rc_box near_hole(const rc_mask *flags) {
   return rc_box_grown(hole, margin, flags->width, flags->height);
 }
 
-/* Points within the box. beside: only where its distance is positive; NULL: all. */
+/* Points of the sources within the box. beside: only where its distance is positive; NULL: all. */
 static void set_view(const rc_image *image, const rc_mask *flags, rc_chart chart, rc_box box,
                      const rc_boundary *beside, view *v) {
-  rc_box sources = rc_box_of(flags, RC_SOURCE); /* they may be few, of a large picture */
-  rc_box within = {
-      box.x0 > sources.x0 ? box.x0 : sources.x0, box.y0 > sources.y0 ? box.y0 : sources.y0,
-      box.x1 < sources.x1 ? box.x1 : sources.x1, box.y1 < sources.y1 ? box.y1 : sources.y1};
+  box = rc_box_common(box, rc_box_of(flags, RC_SOURCE)); /* they may be few, of a large picture */
   *v = (view){image, flags, rc_chart_flat(chart), INFINITY, 0, {0}};
-  if (within.x1 <= within.x0 || within.y1 <= within.y0) return;
+  if (box.x1 <= box.x0 || box.y1 <= box.y0) return;
   for (uint32_t n = 0; n < TRIES && v->count < POINTS; n++) {
     uint64_t bits = rc_random(rc_key(0, 97, 0), n, 0, 0);
-    int x = within.x0 + (int)rc_below((uint32_t)bits, (uint32_t)(within.x1 - within.x0));
-    int y = within.y0 + (int)rc_below((uint32_t)(bits >> 32), (uint32_t)(within.y1 - within.y0));
+    int x = box.x0 + (int)rc_below((uint32_t)bits, (uint32_t)(box.x1 - box.x0));
+    int y = box.y0 + (int)rc_below((uint32_t)(bits >> 32), (uint32_t)(box.y1 - box.y0));
     float px = (float)x - chart.x0, py = (float)y - chart.y0,
           w = 1.f + chart.lx * px + chart.ly * py;
     if (beside && !(beside->nx * px + beside->ny * py + beside->at > 0)) continue;
@@ -165,10 +162,10 @@ static rc_rails median_of(const rc_chart *chart, const rc_crossing *lines, int c
 
 /* With q = X / w in one chart and q' in the other, u the old w of the new origin, which is D away,
  *   q' = u (q + D (l . q)) - u D,   q = (q' - D (l . q') / u + D) / u */
-rc_rails rc_rails_in_chart(const rc_known_rails *known, const rc_chart *to) {
+rc_rails rc_rails_in_chart(const rc_known_rails *known, const rc_chart *chart) {
   const rc_chart *from = &known->chart;
   rc_rails rails = known->rails;
-  float dx = to->x0 - from->x0, dy = to->y0 - from->y0;
+  float dx = chart->x0 - from->x0, dy = chart->y0 - from->y0;
   float unit = 1.f + from->lx * dx + from->ly * dy;
   float drift = from->lx * rails.a + from->ly * rails.b;
   rc_rails r = rails;
