@@ -214,7 +214,7 @@ static double spread_of(const rc_tone *tone, const sums *s) {
 /* Takes from coloured trends all but what lies along the mean colour. Where that is negative, as
  * floats may be, it is no colour. */
 static void keep_light(rc_tone *tone, const sums *s) {
-  double colour[3], square = 0, count = s->product[0][0];
+  double colour[3] = {0, 0, 0}, square = 0, count = s->product[0][0];
   rc_tone light = *tone;
   for (int k = 0; k < tone->channels; k++) {
     colour[k] = s->value[k][0] / count, square += colour[k] * colour[k];
