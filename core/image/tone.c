@@ -30,9 +30,9 @@
 #define LEAST_EXPLAINED_BEYOND .91
 /* Light makes all colours brighter alike, or nearly: where more than this part of what trends
  * spread by is colour they are of things, as of red hens to one side of a lawn, and so is the
- * colour. Dunes, tea and piers .02 .. .10; a tree before a brick wall .14, hens .28, lit columns
- * .30 .. .38. */
-#define MOST_COLOURED .12
+ * colour. Dunes, tea, piers and a ruin .02 .. .13; a tree before a brick wall .14, hens .28, lit
+ * columns .30 .. .38. */
+#define MOST_COLOURED .133
 /* Enough for six decimals of a trend. */
 #define MOST_SAMPLES 400000
 #define TERMS RC_TONE_TERMS
