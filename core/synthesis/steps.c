@@ -103,7 +103,7 @@ static int nearest(const tally *t) {
   return bin;
 }
 
-/* What is looked at to fill the target's bins from first on: up to some times nearer, and so far
+/* What is looked at to fill the nearest targets: up to some times nearer than they are, and so far
  * that there is source. */
 static rc_box box_of_step(const steps *s, const tally *t) {
   const rc_mask *flags = &s->flags;
