@@ -130,10 +130,11 @@ static recede_status explain(rc_context *context, recede_status status, const ch
 static recede_status move_to_foot(rc_context *context, const recede_view *mask, const double h[4],
                                   double on[2]) {
   rc_target_summary all, below;
+  rc_box whole = {0, 0, mask->width, mask->height};
   /* Where it is steeper neither side is below. */
   if (!(fabs(h[3] - h[1]) <= fabs(h[2] - h[0]))) return RECEDE_OK;
-  RC_TRY(rc_sum_target(context, mask, NULL, &all));
-  RC_TRY(rc_sum_target(context, mask, h, &below));
+  RC_TRY(rc_sum_target(context, mask, whole, NULL, &all));
+  RC_TRY(rc_sum_target(context, mask, all.box, h, &below));
   if ((double)below.pixels > LEAST_FOOT * (double)all.pixels) on[0] = below.x, on[1] = below.y;
   return RECEDE_OK;
 }

@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "image/image.h"
+#include "base/memory.h"
 
 static int least_of(int a, int b) { return a < b ? a : b; }
 static uint8_t one_more(int v) { return (uint8_t)(v < 255 ? v + 1 : 255); }
@@ -80,4 +80,36 @@ void rc_distance_inside(const uint8_t *flags, uint8_t flag, int width, int heigh
   distance += (size_t)box.y0 * (size_t)width + (size_t)box.x0;
   sweep(of, 1, edge, distance);
   sweep(of, -1, edge, distance);
+}
+
+/* Whether so many columns side by side, with those beyond the ends, have had the flag for so many
+ * rows. */
+static bool has_run(const int *rows, int width, int side) {
+  int run = side / 2;
+  for (int x = 0; x < width; x++) {
+    run = rows[x] >= side ? run + 1 : 0;
+    if (run >= side) return true;
+  }
+  return width && run + side / 2 >= side;
+}
+
+recede_status rc_is_deep(rc_context *context, const rc_mask *flags, uint8_t flag, int px,
+                         bool *deep) {
+  int side = 2 * px - 1, width = flags->width, height = flags->height;
+  int *rows; /* of each column, up to here and without a break */
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, width, &rows));
+  for (int x = 0; x < width; x++) rows[x] = px - 1;
+  *deep = false;
+  for (int y = 0; y < height + px - 1 && !*deep; y++) {
+    const uint8_t *row = y < height ? rc_flag(flags, 0, y) : NULL;
+    int most = 0;
+    for (int x = 0; x < width; x++) {
+      rows[x] = !row || row[x] & flag ? rows[x] + 1 : 0;
+      most = rows[x] > most ? rows[x] : most;
+    }
+    *deep = most >= side && has_run(rows, width, side);
+  }
+  rc_release(context, mark);
+  return RECEDE_OK;
 }

@@ -41,9 +41,16 @@
 
 static int within(int v, int low, int end) { return v < low ? low : v >= end ? end - 1 : v; }
 
+static double unit_x(const rc_tone *tone, int px) {
+  return (px - tone->middle_x) / tone->half_width;
+}
+
+static double unit_y(const rc_tone *tone, int py) {
+  return (py - tone->middle_y) / tone->half_height;
+}
+
 static void basis(const rc_tone *tone, int px, int py, double terms[TERMS]) {
-  double x = (px - tone->middle_x) / tone->half_width,
-         y = (py - tone->middle_y) / tone->half_height;
+  double x = unit_x(tone, px), y = unit_y(tone, py);
   terms[0] = 1, terms[1] = x, terms[2] = y;
   terms[3] = x * x, terms[4] = x * y, terms[5] = y * y;
 }
@@ -286,33 +293,26 @@ static bool has_any(const uint8_t *flags, int count, uint8_t flag) {
   return any & flag;
 }
 
-/* The trend of one channel at some pixels, whose terms are these. */
-static void trend_of(const double own[TERMS], double terms[TERMS][COLUMNS], double *value) {
-  for (int i = 0; i < COLUMNS; i++) value[i] = 0;
-  for (int t = 0; t < TERMS; t++)
-    for (int i = 0; i < COLUMNS; i++) value[i] += own[t] * terms[t][i];
-}
-
 static void apply_row(void *user, int y, int thread) {
   const application *a = user;
   const rc_tone *tone = a->tone;
-  double terms[TERMS][COLUMNS], value[COLUMNS];
+  double v = unit_y(tone, within(y, tone->box.y0, tone->box.y1));
   (void)thread;
   for (int first = 0; first < a->image->width; first += COLUMNS) {
+    double u[COLUMNS], trend[COLUMNS];
     int count = a->image->width - first < COLUMNS ? a->image->width - first : COLUMNS;
     const uint8_t *flags = rc_flag(a->flags, first, y);
     float *pixels = rc_pixel(a->image, first, y);
     if (!has_any(flags, count, a->flag)) continue;
-    for (int i = 0; i < COLUMNS; i++) {
-      double at[TERMS];
-      basis(tone, within(first + i, tone->box.x0, tone->box.x1),
-            within(y, tone->box.y0, tone->box.y1), at);
-      for (int t = 0; t < TERMS; t++) terms[t][i] = at[t];
-    }
+    for (int i = 0; i < COLUMNS; i++)
+      u[i] = unit_x(tone, within(first + i, tone->box.x0, tone->box.x1));
     for (int k = 0; k < tone->channels; k++) {
-      trend_of(tone->terms[k], terms, value);
+      const double *own = tone->terms[k]; /* in basis()'s order; the compiler makes vectors of it */
+      for (int i = 0; i < COLUMNS; i++)
+        trend[i] = own[0] + own[1] * u[i] + own[2] * v + own[3] * (u[i] * u[i]) +
+                   own[4] * (u[i] * v) + own[5] * (v * v);
       for (int i = 0; i < count; i++)
-        if (flags[i] & a->flag) pixels[i * tone->channels + k] += a->sign * (float)value[i];
+        if (flags[i] & a->flag) pixels[i * tone->channels + k] += a->sign * (float)trend[i];
     }
   }
 }

@@ -69,14 +69,14 @@ static rc_band own_scales(const rc_problem *problem) {
   return band;
 }
 
-/* Twice the largest distance of such a pixel from one that is not, which is known up to 255 px. */
-static recede_status widest(rc_context *context, const rc_mask *flags, uint8_t wanted, int *width) {
+/* Twice the largest distance of a target pixel from one that is none, which is known up to 255. */
+static recede_status widest(rc_context *context, const rc_mask *flags, int *width) {
   uint8_t *depth;
   int most = 0;
   size_t count = (size_t)flags->width * (size_t)flags->height;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, count, &depth));
-  rc_distance_inside(flags->data, wanted, flags->width, flags->height, false, depth);
+  rc_distance_inside(flags->data, RC_TARGET, flags->width, flags->height, false, depth);
   for (size_t i = 0; i < count; i++) most = depth[i] > most ? depth[i] : most;
   *width = 2 * most;
   rc_release(context, mark);
@@ -87,13 +87,13 @@ static recede_status keep_near(rc_context *context, const rc_problem *problem,
                                const rc_band *band) {
   int width;
   if (rc_all_is_near(&problem->flags, &problem->target)) return RECEDE_OK;
-  RC_TRY(widest(context, &problem->flags, RC_TARGET, &width));
+  RC_TRY(widest(context, &problem->flags, &width));
   return rc_keep_near(context, &problem->flags, &problem->target, band, width);
 }
 
 static recede_status build_pyramid(rc_context *context, const rc_problem *problem,
                                    rc_image *residual, rc_descent *e) {
-  int width;
+  bool deep;
   e->images[0] = *residual;
   e->flags[0] = problem->flags;
   e->level_count = 1;
@@ -102,10 +102,10 @@ static recede_status build_pyramid(rc_context *context, const rc_problem *proble
     const rc_mask *flags = &e->flags[last];
     int shorter = flags->width < flags->height ? flags->width : flags->height;
     if (shorter / 2 < LEAST_LEVEL_PX) return RECEDE_OK;
-    RC_TRY(widest(context, flags, RC_TARGET, &width));
-    if (width / 2 < COARSEST_HOLE_PX || e->level_count == RC_MAX_LEVELS) return RECEDE_OK;
-    RC_TRY(widest(context, flags, RC_SOURCE, &width));
-    if (width / 2 < COARSEST_SOURCE_PX) return RECEDE_OK;
+    RC_TRY(rc_is_deep(context, flags, RC_TARGET, COARSEST_HOLE_PX, &deep));
+    if (!deep || e->level_count == RC_MAX_LEVELS) return RECEDE_OK;
+    RC_TRY(rc_is_deep(context, flags, RC_SOURCE, COARSEST_SOURCE_PX, &deep));
+    if (!deep) return RECEDE_OK;
     RC_TRY(rc_half(context, &e->images[last], &e->flags[last], &e->images[last + 1],
                    &e->flags[last + 1]));
     e->level_count++;
@@ -262,8 +262,8 @@ static recede_status take_tracks(rc_context *context, const rc_descent *e, const
 }
 
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
-                            const recede_params *params, rc_image *filled, rc_shortfall *shortfall,
-                            rc_known_rails *known) {
+                            const recede_params *params, bool restored, rc_image *filled,
+                            rc_shortfall *shortfall, rc_known_rails *known) {
   rc_descent e = {.params = params,
                   .kernels = rc_kernels_select(context->host.kernel),
                   .rest = shortfall->rest};
@@ -322,9 +322,9 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(rc_stage(context, "detail", .93, .97));
   if (params->engine_detail) RC_TRY(rc_match_detail(context, &finest, filled));
   count_shortfall(context, &e, &finest, shortfall);
-  const uint8_t all = RC_TARGET | RC_KNOWN;
-  RC_TRY(rc_tracks_apply(context, &tracks, &e.chart, 0, &problem->flags, all, 1, filled));
-  return rc_tone_apply(context, &tone, &problem->flags, all, 1, filled);
+  const uint8_t which = restored ? RC_TARGET | RC_KNOWN : RC_TARGET;
+  RC_TRY(rc_tracks_apply(context, &tracks, &e.chart, 0, &problem->flags, which, 1, filled));
+  return rc_tone_apply(context, &tone, &problem->flags, which, 1, filled);
 }
 
 uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int channels,

@@ -13,12 +13,12 @@ typedef struct rc_shortfall {
 
 struct rc_known_rails; /* of structure/rails.h */
 
-/* As problem.h says of all methods. Of the other pixels known ones are as before, but for rounding.
- * Adds to what the report has of magnified pixels, those of the rest left out. known: the rails
- * are taken from there if they run, and else looked for and put there, with
+/* As problem.h says of all methods. restored: known pixels are as before, but for rounding; else
+ * they are spoiled. Adds to what the report has of magnified pixels, those of the rest left out.
+ * known: the rails are taken from there if they run, and else looked for and put there, with
  * whether the fill kept to them. */
 recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
-                            const recede_params *params, rc_image *filled, rc_shortfall *shortfall,
-                            struct rc_known_rails *known);
+                            const recede_params *params, bool restored, rc_image *filled,
+                            rc_shortfall *shortfall, struct rc_known_rails *known);
 
 #endif

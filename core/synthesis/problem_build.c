@@ -26,17 +26,17 @@ static bool is_below(const double line[4], int x, int y) {
   return !line || y > line[1] + (line[3] - line[1]) / (line[2] - line[0]) * (x - line[0]);
 }
 
-recede_status rc_sum_target(rc_context *context, const recede_view *mask, const double line[4],
-                            rc_target_summary *summary) {
+recede_status rc_sum_target(rc_context *context, const recede_view *mask, rc_box within,
+                            const double line[4], rc_target_summary *summary) {
   double sum_x = 0, sum_y = 0;
   float *row;
   *summary = (rc_target_summary){.box = {mask->width, mask->height, 0, 0}};
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, mask->width, &row));
-  for (int y = 0; y < mask->height; y++) {
-    rc_view_read(mask, 0, y, mask->width, row);
-    for (int x = 0; x < mask->width; x++) {
-      if (!(row[x] > 0) || !is_below(line, x, y)) continue;
+  for (int y = within.y0; y < within.y1; y++) {
+    rc_view_read(mask, within.x0, y, within.x1 - within.x0, row);
+    for (int x = within.x0; x < within.x1; x++) {
+      if (!(row[x - within.x0] > 0) || !is_below(line, x, y)) continue;
       rc_box *box = &summary->box;
       if (x < box->x0) box->x0 = x;
       if (x >= box->x1) box->x1 = x + 1;
@@ -55,7 +55,8 @@ recede_status rc_sum_target(rc_context *context, const recede_view *mask, const 
 
 recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
                                   rc_target_summary *summary) {
-  RC_TRY(rc_sum_target(context, mask, NULL, summary));
+  rc_box all = {0, 0, mask->width, mask->height};
+  RC_TRY(rc_sum_target(context, mask, all, NULL, summary));
   if (summary->pixels) return RECEDE_OK;
   return rc_fail(context, RECEDE_EMPTY_TARGET,
                  "The mask selects nothing: all its pixels are black. Paint what is to be filled "

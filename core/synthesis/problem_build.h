@@ -12,10 +12,10 @@ typedef struct rc_target_summary {
   rc_box looked_at;
 } rc_target_summary;
 
-/* Of what the mask has below the line through (line[0], line[1]) and (line[2], line[3]), of all
+/* Of what the mask has there: below the line through (line[0], line[1]) and (line[2], line[3]), all
  * where line is NULL. No pixels: the rest says nothing. */
-recede_status rc_sum_target(rc_context *context, const recede_view *mask, const double line[4],
-                            rc_target_summary *summary);
+recede_status rc_sum_target(rc_context *context, const recede_view *mask, rc_box within,
+                            const double line[4], rc_target_summary *summary);
 /* Of all the mask. RECEDE_EMPTY_TARGET when it selects nothing. */
 recede_status rc_summarize_target(rc_context *context, const recede_view *mask,
                                   rc_target_summary *summary);

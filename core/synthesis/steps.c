@@ -155,44 +155,60 @@ static uint8_t *rest_at(const steps *s, int x, int y) {
   return &s->shortfall.rest[(size_t)y * (size_t)s->flags.width + (size_t)x];
 }
 
-/* Bins where by now there is source enough to try again what found none. */
-static void find_again(const steps *s, bool again[BINS]) {
-  tally t;
-  count(s, &t);
-  for (int i = 0; i < BINS; i++) {
-    int from = i < NEAR_BINS ? 0 : i - NEAR_BINS, end = i + NEAR_BINS + 1;
-    again[i] = (double)sum(t.source, from, end) > ENOUGH * (double)sum(t.target, from, end);
-  }
+/* What was filled, the bins from first on, stays, and is source. What found none remains a target.
+ */
+static void take_filled(steps *s, int first) {
+  const rc_mask *flags = &s->flags;
+  for (int y = 0; y < flags->height; y++)
+    for (int x = 0; x < flags->width; x++) {
+      if (!(*rc_flag(flags, x, y) & RC_TARGET) || *rc_flag(&s->bins, x, y) < first ||
+          *rest_at(s, x, y))
+        continue;
+      *rc_flag(flags, x, y) = RC_KNOWN | RC_SOURCE;
+      s->done++;
+    }
 }
 
-/* Of what was filled, the bins from first on stay, and are sources. What found none stays a target
- * where it may find one in a later step; else it is what continued says. last: there is none. */
-static void keep(steps *s, int first, bool last, uint8_t continued) {
+/* Bins from first on where by now there is source enough to try again what found none. */
+static void find_again(const steps *s, int first, bool again[BINS]) {
+  tally t;
+  uint64_t tried = 0;
+  count(s, &t);
+  for (int i = first; i < BINS; i++) {
+    int from = i < NEAR_BINS ? 0 : i - NEAR_BINS, end = i + NEAR_BINS + 1;
+    again[i] = (double)sum(t.source, from, end) > ENOUGH * (double)sum(t.target, from, end);
+    tried += again[i] ? t.target[i] : 0;
+  }
+  if ((double)tried < LEAST_AGAIN * (double)s->targets) memset(again, 0, BINS * sizeof *again);
+}
+
+/* What found no source and is not tried again: what continues what is beside it gets these flags.
+ */
+static void settle(steps *s, int first, const bool again[BINS], uint8_t continued) {
   const rc_mask *flags = &s->flags;
-  bool again[BINS] = {false};
-  uint64_t rest[BINS] = {0}, tried = 0;
   for (int y = 0; y < flags->height; y++)
     for (int x = 0; x < flags->width; x++) {
       int bin = *rc_flag(&s->bins, x, y);
-      if (!(*rc_flag(flags, x, y) & RC_TARGET) || bin < first) continue;
-      if (*rest_at(s, x, y))
-        rest[bin]++;
-      else
-        *rc_flag(flags, x, y) = RC_KNOWN | RC_SOURCE, s->done++;
-    }
-  if (!last) find_again(s, again);
-  for (int i = 0; i < BINS; i++) tried += again[i] ? rest[i] : 0;
-  bool worth = (double)tried >= LEAST_AGAIN * (double)s->targets;
-  for (int y = 0; y < flags->height; y++)
-    for (int x = 0; x < flags->width; x++) {
-      int bin = *rc_flag(&s->bins, x, y);
-      if (!(*rc_flag(flags, x, y) & RC_TARGET) || bin < first || (worth && again[bin])) continue;
+      if (!(*rc_flag(flags, x, y) & RC_TARGET) || bin < first || again[bin]) continue;
       bool missing = *rest_at(s, x, y) == 2;
       *rc_flag(flags, x, y) = missing ? RC_KNOWN : continued;
       s->shortfall.missing += missing;
       s->shortfall.continued += !missing;
       s->done++;
     }
+}
+
+/* After a fill of the bins from first on: what it filled is kept, of what found no source is
+ * settled what no later step may fill. */
+static void keep(steps *s, int first, uint8_t continued) {
+  static const bool none[BINS];
+  bool again[BINS] = {false};
+  uint64_t before = s->done;
+  take_filled(s, first);
+  find_again(s, first, again);
+  settle(s, first, again, continued);
+  if ((double)(s->done - before) < LEAST_FILLED * (double)s->targets)
+    settle(s, first, none, continued);
 }
 
 /* Fills the bins of the target from first on. */
@@ -209,7 +225,7 @@ static recede_status fill_step(rc_context *context, steps *s, const tally *t, in
       RC_NEW_ZERO(context, (size_t)part.flags.width * (size_t)part.flags.height, &shortfall.rest));
   params.surface = context->report.surface; /* one for all */
   rails.chart.x0 -= (float)box.x0, rails.chart.y0 -= (float)box.y0;
-  RC_TRY(rc_fill_plane(context, &part, &params, &part.image, &shortfall, &rails));
+  RC_TRY(rc_fill_plane(context, &part, &params, false, &part.image, &shortfall, &rails));
   for (int y = part.target.y0; y < part.target.y1; y++)
     for (int x = part.target.x0; x < part.target.x1; x++) {
       if (!(*rc_flag(&part.flags, x, y) & RC_TARGET)) continue;
@@ -237,9 +253,8 @@ static recede_status fill_rest(rc_context *context, steps *s) {
   count(s, &t);
   int first = farthest(&t);
   /* Large parts that only continue would be seen again; the strips that steps leave would not. */
-  keep(s, first, false, RC_KNOWN);
+  keep(s, first, RC_KNOWN);
   while (s->done < s->targets) {
-    uint64_t before = s->done;
     RC_TRY(rc_poll(context));
     count(s, &t);
     if (!sum(t.target, first, BINS)) { /* nothing is tried again */
@@ -250,9 +265,7 @@ static recede_status fill_rest(rc_context *context, steps *s) {
     share_of_step(context, s, sum(t.target, first, BINS));
     RC_TRY(rc_poll(context));
     RC_TRY(fill_step(context, s, &t, first));
-    keep(s, first, false, RC_KNOWN | RC_SOURCE);
-    if ((double)(s->done - before) < LEAST_FILLED * (double)s->targets)
-      keep(s, first, true, RC_KNOWN | RC_SOURCE);
+    keep(s, first, RC_KNOWN | RC_SOURCE);
   }
   return RECEDE_OK;
 }
@@ -288,7 +301,8 @@ recede_status rc_fill_in_steps(rc_context *context, const rc_problem *problem,
   bool far = params->engine_steps && !frontal && (double)sum(t.target, 0, farthest(&t)) >= least;
   rc_span(context, 0, far ? FIRST_SHARE : 1);
   rc_block *mark = rc_mark(context);
-  RC_TRY(rc_fill_plane(context, problem, params, filled, &s.shortfall, &s.rails));
+  RC_TRY(rc_fill_plane(context, problem, params, far || problem->synthesis, filled, &s.shortfall,
+                       &s.rails));
   rc_release(context, mark);
   if (far && (double)(s.shortfall.continued + s.shortfall.missing) >= least)
     RC_TRY(fill_rest(context, &s));
