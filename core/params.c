@@ -132,6 +132,8 @@ static const recede_param_info table[] = {
     STAGE("engine-whole", engine_whole, "few whole copies start what lines cross (boards always)"),
     STAGE("engine-cuts", engine_cuts, "lead seams where the copies on both sides look alike"),
     STAGE("engine-coherence", engine_coherence, "a price on neighbours with other displacements"),
+    STAGE("engine-beside", engine_beside,
+          "copy near the horizon what lies beside the hole, as far away"),
     STAGE("engine-steps", engine_steps,
           "fill what is too far away for any source from what is filled by then"),
     STAGE("engine-usage", engine_usage, "a price on taking the same source often"),

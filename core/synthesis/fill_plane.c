@@ -266,6 +266,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                             rc_shortfall *shortfall, rc_known_rails *known) {
   rc_descent e = {.params = params,
                   .kernels = rc_kernels_select(context->host.kernel),
+                  .take_beside = params->engine_beside && !problem->synthesis,
                   .rest = shortfall->rest};
   bool raised = true;
   rc_tone tone;

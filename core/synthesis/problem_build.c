@@ -152,15 +152,15 @@ static double nearest_w(const rc_problem *problem, double *x, double *y) {
   return nearest;
 }
 
-/* Takes target pixels beyond the horizon out, and source that is too far away; sets target box. */
-static void apply_horizon(rc_context *context, rc_problem *problem, double least_target_w) {
-  rc_box *box = &problem->target;
+/* Takes target pixels beyond the horizon out; sets target box. The least w of those left. */
+static double refuse_beyond(rc_context *context, rc_problem *problem, double least_target_w) {
+  rc_box *box = &problem->target, all = rc_box_of(&problem->flags, RC_TARGET);
+  double least = INFINITY;
   *box = (rc_box){problem->flags.width, problem->flags.height, 0, 0};
-  for (int y = 0; y < problem->flags.height; y++)
-    for (int x = 0; x < problem->flags.width; x++) {
+  for (int y = all.y0; y < all.y1; y++)
+    for (int x = all.x0; x < all.x1; x++) {
       uint8_t *flag = rc_flag(&problem->flags, x, y);
       double w = rc_w(&problem->line, x, y);
-      if (w < LEAST_W_OF_SOURCE) *flag &= (uint8_t)~RC_SOURCE;
       if (!(*flag & RC_TARGET)) continue;
       if (w < least_target_w) {
         *flag = 0;
@@ -168,11 +168,22 @@ static void apply_horizon(rc_context *context, rc_problem *problem, double least
         continue;
       }
       context->report.filled_pixels++;
+      least = fmin(least, w);
       if (x < box->x0) box->x0 = x;
       if (x >= box->x1) box->x1 = x + 1;
       if (y < box->y0) box->y0 = y;
       box->y1 = y + 1;
     }
+  return least;
+}
+
+/* Source that is too far away is none, unless target is as far. */
+static void refuse_far_source(rc_problem *problem, double least_target_w) {
+  double least = fmin(LEAST_W_OF_SOURCE, least_target_w);
+  for (int y = 0; y < problem->flags.height; y++)
+    for (int x = 0; x < problem->flags.width; x++)
+      if (rc_w(&problem->line, x, y) < least)
+        *rc_flag(&problem->flags, x, y) &= (uint8_t)~RC_SOURCE;
 }
 
 /* Target that has target, or the picture's end, on its four sides. */
@@ -229,7 +240,8 @@ recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
         "the horizon or fill with the frontal orientation.",
         (unsigned long long)summary->pixels);
   problem->line = line_of(plane, box.x0, box.y0, x, y);
-  apply_horizon(context, problem, LEAST_W_OF_TARGET * nearest / recede_plane_w(plane, x, y));
+  double least_w = LEAST_W_OF_TARGET * nearest / recede_plane_w(plane, x, y);
+  refuse_far_source(problem, refuse_beyond(context, problem, least_w));
   distrust_ring(&problem->flags);
   if (context->report.refused_pixels)
     rc_warn(
@@ -309,7 +321,8 @@ recede_status rc_problem_of_synthesis(rc_context *context, const rc_views *exemp
   rc_release(context, mark);
   double nearest = nearest_w(problem, &unused_x, &unused_y);
   problem->line = line_of(plane, 0, 0, x, y);
-  apply_horizon(context, problem, LEAST_W_OF_TARGET * nearest / recede_plane_w(plane, x, y));
+  double least_w = LEAST_W_OF_TARGET * nearest / recede_plane_w(plane, x, y);
+  refuse_far_source(problem, refuse_beyond(context, problem, least_w));
   if (context->report.refused_pixels)
     rc_warn(context, "%llu px of the result lie beyond the horizon and are left empty.",
             (unsigned long long)context->report.refused_pixels);

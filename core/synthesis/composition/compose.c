@@ -52,13 +52,22 @@ typedef struct composition {
 
 static const int step_x[4] = {-1, 1, 0, 0}, step_y[4] = {0, 0, -1, 1};
 
-/* The texture that a copy puts at (x, y). Flat copies are finer along the tilt than across it: mips
- * go by what is across, and along it the mean of several samples is taken. */
-static void copy_value(const composition *c, rc_copy copy, int x, int y, float *value) {
+static bool is_fixed(const rc_level *level, int x, int y) {
+  if (!rc_inside(level->width, level->height, x, y)) return false;
+  return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & (RC_TARGET | RC_KNOWN)) ==
+         RC_KNOWN;
+}
+
+/* The texture that a copy puts at (x, y); false: it leads to nothing known. Flat copies are finer
+ * along the tilt than across it: mips go by what is across, and along it the mean of several
+ * samples is taken. */
+static bool copy_value(const composition *c, rc_copy copy, int x, int y, float *value) {
   const rc_chart *chart = &c->level->chart;
   float at_x = rc_level_x(c->level, x), at_y = rc_level_y(c->level, y), scale = 1.f;
   rc_place place = rc_copy_place(chart, copy, at_x, at_y);
   float across = place.ratio, along = chart->raised ? across : across * across;
+  bool known = !place.beyond && is_fixed(c->level, (int)rc_round(place.x + chart->x0),
+                                         (int)rc_round(place.y + chart->y0));
   int mip = 0;
   for (; mip + 1 < c->mip_count && across * scale > MIP_AT; mip++) scale *= .5f;
   int taps = (int)(along * scale + TAPS_ROUND);
@@ -76,6 +85,7 @@ static void copy_value(const composition *c, rc_copy copy, int x, int y, float *
     for (int k = 0; k < c->channels; k++) sum[k] += value[k];
   }
   for (int k = 0; k < c->channels; k++) value[k] = sum[k] / (float)taps;
+  return known;
 }
 
 static void sample_row(void *user, int item, int thread) {
@@ -100,19 +110,13 @@ static float change(const composition *c, const float *from, const float *to) {
   return sum;
 }
 
-static bool is_fixed(const rc_level *level, int x, int y) {
-  if (!rc_inside(level->width, level->height, x, y)) return false;
-  return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & (RC_TARGET | RC_KNOWN)) ==
-         RC_KNOWN;
-}
-
 /* What the copy of target (x, y) has to its side e, and by how much the pixel there is off it.
  * False: that is no known pixel. */
 static bool miss_at(const composition *c, int x, int y, int e, float *there, float *miss) {
   int nx = x + step_x[e], ny = y + step_y[e];
   rc_copy own = c->level->field[rc_level_at(c->level, x, y)];
   if (isnan(own.a) || !is_fixed(c->level, nx, ny)) return false;
-  copy_value(c, own, nx, ny, there);
+  if (!copy_value(c, own, nx, ny, there)) copy_value(c, own, x, y, there);
   for (int k = 0; k < c->channels; k++) miss[k] = rc_pixel(c->residual, nx, ny)[k] - there[k];
   return true;
 }
@@ -199,10 +203,14 @@ static uint8_t add_edge(const composition *c, int x, int y, int e, const float *
   rc_copy other = level->field[at];
   const float *neighbour = c->value + at * (size_t)c->channels;
   if (isnan(other.a) || rc_same_copy(own, other)) return count_of(c, value, neighbour);
-  copy_value(c, own, nx, ny, there);
-  copy_value(c, other, x, y, back);
+  bool own_goes_on = copy_value(c, own, nx, ny, there);
+  bool other_goes_on = copy_value(c, other, x, y, back);
+  float share = own_goes_on && other_goes_on ? .5f : 1.f;
   for (int k = 0; k < c->channels; k++) {
-    float across = .5f * ((value[k] - there[k]) + (back[k] - neighbour[k]));
+    float across = 0.f;
+    if (own_goes_on) across += value[k] - there[k];
+    if (other_goes_on) across += back[k] - neighbour[k];
+    across *= share;
     drive[k] += RC_WHOLE_EDGE * (across - (value[k] - neighbour[k]));
   }
   return (uint8_t)RC_WHOLE_EDGE;

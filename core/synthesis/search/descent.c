@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "base/random.h"
+#include "synthesis/search/beside.h"
 #include "synthesis/search/boards.h"
 #include "synthesis/search/coarsest.h"
 #include "synthesis/search/cuts.h"
@@ -55,6 +56,9 @@ static recede_status search_level(rc_context *context, rc_descent *e, int expone
   } else {
     rc_pace p = {0, rc_iterations_at(e, exponent)};
     if (e->on_rails) RC_TRY(rc_boards_mark(context, &e->rails, exponent, level));
+    if (e->take_beside && !e->on_rails && !e->on_lattice)
+      RC_TRY(rc_take_beside(context, level,
+                            rc_key((uint64_t)e->params->seed, 97, (uint32_t)exponent), true));
     RC_TRY(rc_iterate(context, e, exponent, 0, 0, p.total, &p, level, &scratch));
   }
   if (is_cut(e, exponent))
@@ -99,6 +103,8 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
     coarser = level;
   }
   *finest = level;
+  if (e->take_beside && !e->on_rails && !e->on_lattice)
+    RC_TRY(rc_take_beside(context, finest, rc_key((uint64_t)e->params->seed, 96, 0), false));
   return rc_continue_rest(context, finest, rc_key((uint64_t)e->params->seed, 98, 0), e->rest,
                           &e->rest_count);
 }

@@ -29,8 +29,9 @@ typedef struct rc_descent {
   int line_count;
   rc_rails rails;
   bool keep_rails; /* an earlier fill of the same plane did: other starts need not be tried */
-  rc_conditions conditions;                  /* of the finest level */
-  rc_sides sides;                            /* of the finest level */
+  rc_conditions conditions; /* of the finest level */
+  rc_sides sides;           /* of the finest level */
+  bool take_beside; /* what is too far away for a level's patches is taken from beside the hole */
   bool on_rails, on_lattice, continue_lines; /* starts that kept to them fitted well enough */
   int cut_level;       /* the coarsest where seams are led by cuts; level_count: nowhere */
   uint8_t *rest;       /* of each pixel; out: 1 where it only continues what lies beside it */

@@ -104,6 +104,11 @@ typedef struct sorting {
   int32_t (*next)[RC_MAX_SIDES][RC_MAX_BINS];
 } sorting;
 
+int rc_level_bin(const rc_level *level, float w) {
+  int bin = (int)((rc_log2(w) - level->bin_log2_w0) * RC_BINS_PER_OCTAVE);
+  return bin < 0 ? 0 : bin >= level->bins ? level->bins - 1 : bin;
+}
+
 static void for_each_source(const sorting *s, int band, bool place) {
   const rc_level *level = s->level;
   int end = (band + 1) * BAND_ROWS < level->height ? (band + 1) * BAND_ROWS : level->height;
@@ -114,8 +119,7 @@ static void for_each_source(const sorting *s, int band, bool place) {
       float rx = rc_level_x(level, x), ry = rc_level_y(level, y), w = rc_level_w(level, rx, ry);
       if (!(w > 0.f)) continue;
       int32_t *next = s->next[band][rc_level_side(level, rx, ry)];
-      int bin = (int)((rc_log2(w) - level->bin_log2_w0) * RC_BINS_PER_OCTAVE);
-      bin = bin < 0 ? 0 : bin >= level->bins ? level->bins - 1 : bin;
+      int bin = rc_level_bin(level, w);
       if (place) level->order[next[bin]] = (int32_t)i;
       next[bin]++;
     }

@@ -102,6 +102,8 @@ recede_status rc_level_new(rc_context *context, const rc_mask *flags, const rc_c
 recede_status rc_level_see(rc_context *context, const rc_image *image, const rc_traits *traits,
                            float gamma, float gain, bool coarsest, rc_level *level);
 recede_status rc_level_sort_sources(rc_context *context, rc_level *level);
+/* Of sorted sources those of w, above 0, are in this bin, or would be. */
+int rc_level_bin(const rc_level *level, float w);
 /* When a level is done: the next finer one asks for its field, costs, box, ranges and lattice. */
 void rc_level_free_pixels(rc_context *context, rc_level *level);
 /* A run of level->order, empty when there are none. */

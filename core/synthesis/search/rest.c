@@ -1,12 +1,17 @@
 #include "synthesis/search/rest.h"
 
+#include <math.h>
+
 #include "base/memory.h"
 #include "base/random.h"
 #include "synthesis/search/evaluate.h"
 
 #define TRIES 8
-/* Sources are drawn from this part of them that is nearest to the target's size. */
-#define NEAREST_PART 8
+/* The last rows below the horizon may have no source at all, for of a coarse pixel that lies partly
+ * beyond it nothing is known. Up to so many px from them there may be. */
+#define NEAR_PX 16
+/* Else sources are drawn from those nearest to the target's size, so many or more. */
+#define LEAST_SOURCES 256
 /* A cancel is looked for after so many pixels. */
 #define POLLED_PX 4096
 
@@ -23,28 +28,51 @@ static bool leads_to_source(const rc_level *level, rc_copy copy, int x, int y) {
   return rc_place_at(level, &place, &at) && level->room[at];
 }
 
-static float w_at(const rc_level *level, int x, int y) {
-  return rc_level_w(level, rc_level_x(level, x), rc_level_y(level, y));
+/* A side's sources stand in order of w. */
+static rc_sources nearest_in_size(const rc_level *level, float x, float y) {
+  const int32_t *first = level->first[rc_level_side(level, x, y)];
+  int own = rc_level_bin(level, rc_level_w(level, x, y)), low = own, high = own + 1;
+  while (first[high] - first[low] < LEAST_SOURCES && (low > 0 || high < level->bins)) {
+    low -= low > 0;
+    high += high < level->bins;
+  }
+  return (rc_sources){first[low], first[high]};
 }
 
-/* A side's sources stand in order of w: targets farther than most of them take from the first,
- * nearer ones from the last. */
+/* A copy of what lies a little nearer, somewhere along the horizon. */
+static bool draw_near(const rest *r, int x, int y, rc_copy *copy) {
+  const rc_level *level = r->level;
+  const rc_chart *chart = &level->chart;
+  float steep = sqrtf(chart->lx * chart->lx + chart->ly * chart->ly);
+  float from_x = rc_level_x(level, x), from_y = rc_level_y(level, y);
+  if (!(steep > 0.f)) return false;
+  float down_x = chart->lx / steep, down_y = chart->ly / steep;
+  for (int down = 1; down <= NEAR_PX; down *= 2)
+    for (int n = 0; n < TRIES; n++) {
+      uint64_t bits = rc_random(r->key, (uint32_t)x, (uint32_t)y, (uint32_t)(TRIES * down + n));
+      float along = (float)((level->width + level->height) * (rc_unit(bits) - .5));
+      float to_x = from_x + rc_round((float)down * down_x - along * down_y);
+      float to_y = from_y + rc_round((float)down * down_y + along * down_x);
+      if (rc_level_side(level, to_x, to_y) != rc_level_side(level, from_x, from_y)) continue;
+      *copy = rc_copy_between(chart, from_x, from_y, to_x, to_y);
+      if (leads_to_source(level, *copy, x, y)) return true;
+    }
+  return false;
+}
+
 static bool draw(const rest *r, int x, int y, rc_copy *copy) {
   const rc_level *level = r->level;
-  rc_sources own = rc_level_side_sources(
-      level, rc_level_side(level, rc_level_x(level, x), rc_level_y(level, y)));
-  int sources = own.end - own.begin, part = sources / NEAREST_PART + 1;
-  float w = w_at(level, x, y);
-  if (!sources || !(w > 0.f)) return false;
-  int32_t middle = level->order[own.begin + sources / 2];
-  bool farther = w < w_at(level, middle % level->width, middle / level->width);
+  float from_x = rc_level_x(level, x), from_y = rc_level_y(level, y);
+  if (!(rc_level_w(level, from_x, from_y) > 0.f)) return false;
+  if (draw_near(r, x, y, copy)) return true;
+  rc_sources sources = nearest_in_size(level, from_x, from_y);
+  if (sources.begin == sources.end) return false;
   for (int n = 0; n < TRIES; n++) {
-    uint64_t bits = rc_random(r->key, (uint32_t)x, (uint32_t)y, (uint32_t)n);
-    int i = (int)rc_below((uint32_t)bits, (uint32_t)(part < sources ? part : sources));
-    int32_t source = level->order[farther ? own.begin + i : own.end - 1 - i];
-    *copy = rc_copy_between(&level->chart, rc_level_x(level, x), rc_level_y(level, y),
-                            rc_level_x(level, source % level->width),
-                            rc_level_y(level, source / level->width));
+    int to_x, to_y;
+    rc_level_random_source(level, sources, rc_random(r->key, (uint32_t)x, (uint32_t)y, (uint32_t)n),
+                           &to_x, &to_y);
+    *copy = rc_copy_between(&level->chart, from_x, from_y, rc_level_x(level, to_x),
+                            rc_level_y(level, to_y));
     if (leads_to_source(level, *copy, x, y)) return true;
   }
   return false;
