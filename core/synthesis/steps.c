@@ -174,7 +174,7 @@ static void find_again(const steps *s, int first, bool again[BINS]) {
   tally t;
   uint64_t tried = 0;
   count(s, &t);
-  for (int i = first; i < BINS; i++) {
+  for (int i = first < 0 ? 0 : first; i < BINS; i++) {
     int from = i < NEAR_BINS ? 0 : i - NEAR_BINS, end = i + NEAR_BINS + 1;
     again[i] = (double)sum(t.source, from, end) > ENOUGH * (double)sum(t.target, from, end);
     tried += again[i] ? t.target[i] : 0;
@@ -201,14 +201,10 @@ static void settle(steps *s, int first, const bool again[BINS], uint8_t continue
 /* After a fill of the bins from first on: what it filled is kept, of what found no source is
  * settled what no later step may fill. */
 static void keep(steps *s, int first, uint8_t continued) {
-  static const bool none[BINS];
   bool again[BINS] = {false};
-  uint64_t before = s->done;
   take_filled(s, first);
   find_again(s, first, again);
   settle(s, first, again, continued);
-  if ((double)(s->done - before) < LEAST_FILLED * (double)s->targets)
-    settle(s, first, none, continued);
 }
 
 /* Fills the bins of the target from first on. */
@@ -246,6 +242,7 @@ static void share_of_step(rc_context *context, const steps *s, uint64_t pixels) 
 }
 
 static recede_status fill_rest(rc_context *context, steps *s) {
+  static const bool none[BINS];
   tally t;
   RC_TRY(rc_mask_new(context, s->flags.width, s->flags.height, &s->flags));
   memcpy(s->flags.data, s->problem->flags.data, (size_t)s->flags.width * (size_t)s->flags.height);
@@ -255,6 +252,7 @@ static recede_status fill_rest(rc_context *context, steps *s) {
   /* Large parts that only continue would be seen again; the strips that steps leave would not. */
   keep(s, first, RC_KNOWN);
   while (s->done < s->targets) {
+    uint64_t before = s->done;
     RC_TRY(rc_poll(context));
     count(s, &t);
     if (!sum(t.target, first, BINS)) { /* nothing is tried again */
@@ -266,6 +264,8 @@ static recede_status fill_rest(rc_context *context, steps *s) {
     RC_TRY(rc_poll(context));
     RC_TRY(fill_step(context, s, &t, first));
     keep(s, first, RC_KNOWN | RC_SOURCE);
+    if ((double)(s->done - before) < LEAST_FILLED * (double)s->targets)
+      settle(s, first, none, RC_KNOWN | RC_SOURCE);
   }
   return RECEDE_OK;
 }

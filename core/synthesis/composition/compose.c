@@ -110,8 +110,8 @@ static float change(const composition *c, const float *from, const float *to) {
   return sum;
 }
 
-/* What the copy of target (x, y) has to its side e, and by how much the pixel there is off it.
- * False: that is no known pixel. */
+/* What the copy of target (x, y) has to its side e, or at least here, and by how much the pixel to
+ * that side is off it. False: that is no known pixel. */
 static bool miss_at(const composition *c, int x, int y, int e, float *there, float *miss) {
   int nx = x + step_x[e], ny = y + step_y[e];
   rc_copy own = c->level->field[rc_level_at(c->level, x, y)];

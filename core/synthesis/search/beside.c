@@ -13,6 +13,9 @@
 #define MOVES 32
 #define REACH_OF_WIDTH 3.f
 #define PROBES 16
+/* Where nothing is found for so many pixels of a row in succession every second is asked, then
+ * every third: of pictures that end there are millions. */
+#define SKIPPED_AFTER 64
 
 typedef struct beside {
   rc_level *level;
@@ -74,7 +77,7 @@ static float cost_of(const beside *b, rc_copy copy, int x, int y) {
     int px = x + (int)rc_round(off * b->along_x), py = y + (int)rc_round(off * b->along_y);
     if (!rc_inside(level->width, level->height, px, py)) continue;
     if (rc_level_is_target(level, px, py)) {
-      target_cost += goes_on(b, copy, px, py, &cost) ? cost : end;
+      target_cost += goes_on(b, copy, px, py, &cost) ? fminf(cost, end) : end;
       targets++;
     } else if (b->whole && misses(level, copy, px, py, &cost)) {
       known_cost += cost;
@@ -111,11 +114,14 @@ static bool wants(const beside *b, int x, int y) {
   size_t at = rc_level_at(level, x, y);
   rc_copy copy = level->field[at];
   if (level->locked && level->locked[at]) return false;
+  if (!(rc_level_w(level, rc_level_x(level, x), rc_level_y(level, y)) > 0.f)) return false;
   return isnan(copy.a) || place_of(level, copy, x, y).ratio > FINER;
 }
 
-static void give(beside *b, int x, int y, rc_copy copy) {
+/* The search asks anew what it costs, but votes count by it before. */
+static void give(beside *b, int x, int y, rc_copy copy, float price) {
   b->level->field[rc_level_at(b->level, x, y)] = copy;
+  b->level->cost[rc_level_at(b->level, x, y)] = price;
   b->queue[b->end++] = y * b->level->width + x;
 }
 
@@ -129,7 +135,7 @@ static void spread(beside *b) {
     rc_copy copy = level->field[rc_level_at(level, x, y)];
     for (int i = 0; i < 4; i++)
       if (wants(b, x + dx[i], y + dy[i]) && goes_on(b, copy, x + dx[i], y + dy[i], &price))
-        give(b, x + dx[i], y + dy[i], copy);
+        give(b, x + dx[i], y + dy[i], copy, price);
   }
 }
 
@@ -142,18 +148,25 @@ recede_status rc_take_beside(rc_context *context, rc_level *level, uint64_t key,
   b.width = fabsf(b.along_x) * (float)level->box_w + fabsf(b.along_y) * (float)level->box_h;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, (size_t)level->box_w * (size_t)level->box_h, &b.queue));
-  for (int y = level->box.y0; y < level->box.y1; y++)
+  for (int y = level->box.y0; !whole && y < level->box.y1; y++) {
+    RC_TRY(rc_poll(context));
     for (int x = level->box.x0; x < level->box.x1; x++)
-      if (!whole && rc_level_is_target(level, x, y) && !wants(&b, x, y))
+      if (rc_level_is_target(level, x, y) && !wants(&b, x, y))
         b.queue[b.end++] = y * level->width + x;
+  }
   spread(&b);
   for (int y = level->box.y0; y < level->box.y1; y++) {
     RC_TRY(rc_poll(context));
-    for (int x = level->box.x0; x < level->box.x1; x++) {
+    int step = 1, failed = 0;
+    for (int x = level->box.x0; x < level->box.x1; x += step) {
+      float price;
+      step = 1;
       if (!wants(&b, x, y)) continue;
       rc_copy copy = draw(&b, x, y);
-      if (isnan(copy.a)) continue;
-      give(&b, x, y, copy);
+      failed = isnan(copy.a) ? failed + 1 : 0;
+      step = 1 + failed / SKIPPED_AFTER;
+      if (failed || !goes_on(&b, copy, x, y, &price)) continue;
+      give(&b, x, y, copy, price);
       spread(&b);
     }
   }

@@ -72,6 +72,8 @@ static recede_status run_level(rc_context *context, rc_descent *e, int exponent,
   if (e->continue_lines && !coarsest)
     RC_TRY(rc_lines_lock(context, e->lines, e->line_count, exponent, level));
   if (exponent >= last_searched(e)) RC_TRY(search_level(context, e, exponent, level));
+  if (!exponent && e->take_beside && !e->on_rails && !e->on_lattice)
+    RC_TRY(rc_take_beside(context, level, rc_key((uint64_t)e->params->seed, 96, 0), false));
   level->locked = NULL, level->board = NULL;
   rc_release(context, mark);
   return RECEDE_OK;
@@ -103,8 +105,6 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
     coarser = level;
   }
   *finest = level;
-  if (e->take_beside && !e->on_rails && !e->on_lattice)
-    RC_TRY(rc_take_beside(context, finest, rc_key((uint64_t)e->params->seed, 96, 0), false));
   return rc_continue_rest(context, finest, rc_key((uint64_t)e->params->seed, 98, 0), e->rest,
                           &e->rest_count);
 }
