@@ -351,6 +351,29 @@ static void same_for_threads(void) {
   assert_same_for_threads(verge, "quality=draft");
 }
 
+static double edge(double y, double at) { return CLAMP((y - at) / 6 + .5, 0, 1); }
+
+/* Bands that converge, as a barrier and the ground behind it, neither repeat nor are they rails:
+ * moved along any one direction the edges of the others break. */
+static void converging_edges_stay(void) {
+  picture p = picture_new(480, 360, 1, RECEDE_U8);
+  for (int y = 0; y < 360; y++)
+    for (int x = 0; x < 480; x++) {
+      double far = 120 + .012 * (x - 240), near = 225 - .012 * (x - 240);
+      double value = .7 - .55 * edge(y, far) + .7 * edge(y, near) - .55 * edge(y, near + 24);
+      picture_set(&p, x, y, 0, (float)(value + .02 * noise_at(x, y, 31)));
+    }
+  picture truth = picture_copy(&p);
+  task t = task_new(p, "orientation=frontal");
+  task_hole(&t, (area){120, 75, 360, 285});
+  task_succeeds(&t);
+  double psnr = masked_psnr(&t.result, &truth, &t.mask);
+  g_test_message("PSNR %.1f dB", psnr);
+  g_assert_cmpfloat(psnr, >, 30);
+  task_clear(&t);
+  picture_clear(&truth);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/lines/go-on", lines_go_on);
@@ -360,6 +383,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/lines/boards", boards_run);
   g_test_add_func("/lines/out-of-the-picture", boards_run_out_of_the_picture);
   g_test_add_func("/lines/one-by-one", boards_are_filled_one_by_one);
+  g_test_add_func("/lines/converging", converging_edges_stay);
   g_test_add_func("/lines/pier", boards_of_a_pier_run);
   g_test_add_func("/lines/tiles", tiles_do_not);
   g_test_add_func("/lines/sides", textures_keep_to_their_sides);

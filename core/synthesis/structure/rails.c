@@ -16,7 +16,10 @@
  * this part of what it does moved half as far and, if that is seen, half as far again: bricks,
  * tiles and steps .27 to .60, roofs .74 to .91, cracks .72 to 1, boards .9 and more. So it must be
  * also where no point counts more than most differ by: what stands out, as a dash on a road,
- * differs by more than all the rest together. */
+ * differs by more than all the rest together. And half as far it must change by this part of what
+ * it does moved a little across, .57 and more, or there is nothing that could repeat: bands that
+ * converge .01. */
+#define LEAST_BETWEEN .1
 #define LEAST_PERIOD_PX 6
 #define MOST_PERIOD_PX 64
 #define MOST_REPEATED .69
@@ -30,8 +33,10 @@
 #define FINER_BY 2
 /* Where none of the two strongest lines lies along the rails, but for so many px of the coarsest
  * level from end to end, it would break in the hole: boards have 0 to .2, the wheel tracks beside a
- * bent crack 1. */
+ * bent crack 1. Of the clear lines none may break by more: boards have .7 and less, the edges of a
+ * crash barrier and of the ground behind it, which converge, 1.4. */
 #define MOST_STEP_PX .4f
+#define MOST_STEP_OF_CLEAR_PX 1.f
 /* Points that are looked at, of scales near the hole's, and how many of them must be seen. */
 #define POINTS 2000
 #define TRIES (8 * POINTS)
@@ -220,7 +225,7 @@ static bool runs(const view *v, rc_rails r) {
 
 static bool comes_again(const view *v, rc_rails r) {
   enum { FARTHEST = MOST_PERIOD_PX + MOST_PERIOD_PX / 2 };
-  double changes[FARTHEST + 1];
+  double changes[FARTHEST + 1], least = LEAST_BETWEEN * change_across(v, r, RUN_PX);
   for (int px = LEAST_PERIOD_PX / 2; px <= FARTHEST; px++) {
     float by = (float)px;
     change c = {0, 0};
@@ -232,7 +237,9 @@ static bool comes_again(const view *v, rc_rails r) {
     int before = px / 2, after = px + px / 2, odd = px % 2;
     double half_way = fmin(changes[before], changes[before + odd]);
     double beyond = fmin(changes[after], changes[after + odd]);
-    if (half_way < INFINITY && changes[px] < MOST_REPEATED * fmin(half_way, beyond)) return true;
+    if (half_way < INFINITY && half_way >= least &&
+        changes[px] < MOST_REPEATED * fmin(half_way, beyond))
+      return true;
   }
   return false;
 }
@@ -299,15 +306,18 @@ static float how_far(const rc_crossing *lines, int count, const rc_mask *flags) 
   return most;
 }
 
-/* Whether one of the two strongest lines, if there are any, lies along the rails. */
+/* Whether one of the two strongest lines, if there are any, lies along the rails, and no clear one
+ * lies far off. */
 static bool keep_lines_straight(const rc_chart *chart, const rc_crossing *lines, int count,
                                 int coarse, rc_rails rails) {
-  float least = count ? INFINITY : 0;
-  for (int i = 0; i < count && i < 2; i++) {
+  float least = count ? INFINITY : 0, most_of_clear = 0, px = (float)(1 << coarse);
+  for (int i = 0; i < count; i++) {
     rc_copy d = rc_crossing_direction(chart, &lines[i]);
-    least = fminf(least, fabsf(d.a * rails.b - d.b * rails.a) * rc_crossing_length(&lines[i]));
+    float step = fabsf(d.a * rails.b - d.b * rails.a) * rc_crossing_length(&lines[i]);
+    if (i < 2) least = fminf(least, step);
+    if (lines[i].strength >= RC_CLEAR_STRENGTH) most_of_clear = fmaxf(most_of_clear, step);
   }
-  return least <= MOST_STEP_PX * (float)(1 << coarse);
+  return least <= MOST_STEP_PX * px && most_of_clear <= MOST_STEP_OF_CLEAR_PX * px;
 }
 
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
