@@ -74,7 +74,7 @@ static void half_row(void *user, int y, int thread) {
       any |= flag, all &= flag;
     }
     *rc_flag(h->half_flags, x, y) =
-        any & RC_TARGET ? RC_TARGET : (uint8_t)(all & (RC_KNOWN | RC_SOURCE));
+        any & RC_TARGET ? RC_TARGET : (uint8_t)(all & (RC_KNOWN | RC_SOURCE | RC_ALLOWED));
     rc_half_pixel(rows, 0, flags, width, h->image->channels, x, rc_pixel(h->half_image, x, y));
   }
 }

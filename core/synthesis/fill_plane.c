@@ -15,6 +15,7 @@
 #include "synthesis/search/cuts.h"
 #include "synthesis/search/descent.h"
 #include "synthesis/search/effort.h"
+#include "synthesis/search/lock.h"
 #include "synthesis/search/traits.h"
 #include "synthesis/sources/alike.h"
 #include "synthesis/sources/near.h"
@@ -22,6 +23,7 @@
 #include "synthesis/sources/spots.h"
 #include "synthesis/sources/strangers.h"
 #include "synthesis/structure/boundary.h"
+#include "synthesis/structure/dash_rows.h"
 #include "synthesis/structure/gauge.h"
 #include "synthesis/structure/regions.h"
 #include "synthesis/structure/tracks.h"
@@ -162,6 +164,17 @@ static recede_status find_lines(rc_context *context, rc_descent *e) {
   return RECEDE_OK;
 }
 
+/* Rows of dashes: those of all sources, however unlike what lies beside the hole. */
+static recede_status find_dashes(rc_context *context, const rc_problem *problem,
+                                 const rc_descent *e, rc_dash_rows *rows) {
+  int from = e->params->engine_dashes && !problem->synthesis
+                 ? rc_lines_level(e->flags, e->level_count)
+                 : -1;
+  rc_chart chart = chart_of(problem, false);
+  if (from < 0) return RECEDE_OK;
+  return rc_dash_rows_find(context, &e->images[from], &e->flags[from], &chart, from, rows);
+}
+
 /* Two textures in the hole that no line tells apart, or of which one has two edges. */
 static recede_status find_regions(rc_context *context, rc_descent *e) {
   int last = e->level_count - 1, chords;
@@ -271,6 +284,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   bool raised = true;
   rc_tone tone;
   rc_tracks tracks = {.alike = 0};
+  rc_dash_rows dashes = {.count = 0};
   rc_level finest;
   if (!e.kernels)
     return rc_fail(context, RECEDE_ARGUMENT, "This machine has no kernel %d.",
@@ -283,6 +297,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(rc_stage(context, "pyramid", .07, .1));
   rc_block *pyramid = rc_mark(context);
   RC_TRY(build_pyramid(context, problem, filled, &e));
+  RC_TRY(find_dashes(context, problem, &e, &dashes));
   RC_TRY(choose_surface(context, problem, &e, &raised));
   if (params->engine_alike && !problem->synthesis)
     RC_TRY(keep_alike(context, problem, &band, &tone, filled, pyramid, &e));
@@ -298,6 +313,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     RC_TRY(find_regions(context, &e));
   }
   /* After the lines: a road's own dashes tell whether what crosses the hole repeats. */
+  for (int n = 0; n < e.level_count; n++) rc_dash_rows_take(&dashes, n, &e.flags[n]);
   if (params->engine_spots && !problem->synthesis) {
     RC_TRY(rc_drop_spots(context, &band, e.images, e.flags, e.level_count));
     RC_TRY(rc_drop_strangers(context, &band, e.images, e.flags, e.level_count));
@@ -315,6 +331,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   rc_rails found = e.rails;
   RC_TRY(rc_descend(context, &e, &finest));
+  rc_dash_rows_lay(&dashes, &finest);
   if (!rc_runs(&known->rails) && !rc_has_sides(&e.sides))
     *known = (rc_known_rails){e.on_rails ? e.rails : found, e.chart, e.on_rails};
   context->report.surface = e.chart.raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;

@@ -1,0 +1,454 @@
+#include "synthesis/structure/dash_rows.h"
+
+#include <math.h>
+
+#include "base/memory.h"
+#include "base/real.h"
+
+/* What makes dashes of one row, or of rows side by side, alike. */
+#define MOST_LONGER 1.6
+#define PARALLEL .99 /* cosine of 8 degrees */
+/* They lie on the line within this part of their length, and so many px of the finest level. */
+#define OFF_LINE .1
+#define OFF_LINE_PX 1.5
+/* And where they are due within this part of the period. */
+#define OFF_PERIOD .16
+/* The rest of a dash that the hole or the picture's end cuts off is so wide, and of the whole one's
+ * length at least so much; it is cut away from its middle by so much of its own. */
+#define MOST_WIDER 1.6
+#define LEAST_REST .15
+#define LEAST_TO_CUT .25
+#define SHORTEST_PERIOD 1.25 /* of a dash */
+#define LONGEST_PERIOD 12.
+/* A row is told by so many dashes, and for each that is missing where it could be seen there must
+ * be so many more. One beside such a row, with its dashes and period, by a single one. */
+#define LEAST_DASHES 3
+/* Between them, from so much of a dash's length from its middle, hardly anything stands out by more
+ * than this part of what they do; and across their ends nothing does along most of their length, as
+ * a wall's joints would. Places that are looked at. */
+#define PART_OF_CONTRAST .33
+#define GAP_FROM .75
+#define MOST_PART_BETWEEN .25
+#define ACROSS_FROM .4
+#define ACROSS_TO .8
+#define STEPS_ACROSS 12
+#define LEAST_ACROSS .6
+#define SAMPLES 32
+#define DASHES_PER_MISSING 4
+/* Shorter ones of the level could be missed. */
+#define LEAST_SEEN_PX 8.
+/* So many of a row tell where their line vanishes, if they are off by more than this part of the
+ * period where it was said to: to so much of w at the hole's ends, in so many rounds. */
+#define LEAST_CORRECTING 4
+#define LEAST_OFF .02
+#define MOST_CORRECTION .25
+#define CORRECTIONS 3
+#define FARTHEST 64 /* dashes that are looked for to each side */
+/* A dash is taken, and laid, so many times as wide and long as it is, and so many px of the finest
+ * level (at least of the own level) more on each side: the join needs it. */
+#define TIMES_WIDTH 1.3
+#define TIMES_LENGTH 1.1
+#define MARGIN_PX 4.
+#define LEAST_MARGIN_PX 1.
+/* Copies may be so much too coarse, and nearer ones so much too fine; an octave of the former is so
+ * much worse. */
+#define MOST_COARSE 2.5
+#define MOST_FINE 6.
+#define PRICE_COARSE 3.f
+/* Its own row's are preferred by so many octaves. */
+#define PRICE_OF_OTHER_ROW .1f
+
+typedef struct finder {
+  const rc_mask *flags;
+  rc_chart chart;     /* of the level */
+  double unit, reach; /* one of its px, and half of the hole's longer side, in px of the finest */
+  rc_dashes dashes;
+} finder;
+
+/* In px of a level. False: beyond the horizon. */
+static bool in_picture(const rc_chart *chart, double unit, double u, double v, double *x, double *y,
+                       double *w) {
+  double divisor = 1 - ((double)chart->lx * u + (double)chart->ly * v) / unit;
+  if (!(divisor > 1e-6)) return false;
+  *w = 1 / divisor;
+  *x = u / unit * *w + (double)chart->x0, *y = v / unit * *w + (double)chart->y0;
+  return true;
+}
+
+typedef struct looked {
+  double seen, stands_out; /* places */
+} looked;
+
+static double along(const rc_dash_row *row, double u, double v) {
+  return (u - row->u) * row->a + (v - row->v) * row->b;
+}
+static double across(const rc_dash_row *row, double u, double v) {
+  return fabs((v - row->v) * row->a - (u - row->u) * row->b);
+}
+static double place_of(const rc_dash_row *row, int n) { return row->first + n * row->period; }
+static int number_at(const rc_dash_row *row, double t) {
+  return (int)floor((t - row->first) / row->period + .5);
+}
+
+static bool alike(const rc_dash_row *row, const rc_dash *d) {
+  return d->length < MOST_LONGER * row->length &&
+         row->length < MOST_LONGER * d->length && fabs(d->a * row->a + d->b * row->b) > PARALLEL;
+}
+
+static bool lies_on(const rc_dash_row *row, const rc_dash *d) {
+  return across(row, d->u, d->v) < OFF_LINE * row->length + OFF_LINE_PX / d->w;
+}
+
+/* Whether it is wholly seen where the row's n-th is due. */
+static bool is_one_of(const rc_dash_row *row, const rc_dash *d, int *n) {
+  double t = along(row, d->u, d->v);
+  if (!d->complete || !alike(row, d) || !lies_on(row, d)) return false;
+  *n = number_at(row, t);
+  return fabs(t - place_of(row, *n)) <= OFF_PERIOD * row->period;
+}
+
+static void gather(const finder *f, rc_dash_row *row) {
+  row->seen_count = 0;
+  for (int i = 0, n; i < f->dashes.count && row->seen_count < RC_MOST_IN_ROW; i++)
+    if (is_one_of(row, &f->dashes.found[i], &n)) row->seen[row->seen_count++] = n;
+}
+
+static bool is_seen(const finder *f, double x, double y) {
+  int px = (int)floor(x + .5), py = (int)floor(y + .5);
+  return rc_inside(f->flags->width, f->flags->height, px, py) &&
+         (*rc_flag(f->flags, px, py) & (RC_SOURCE | RC_ALLOWED));
+}
+
+/* Whether a row's n-th dash would be seen if it were there. */
+static bool would_be_seen(const finder *f, const rc_dash_row *row, int n) {
+  double x[3], y[3], w;
+  for (int k = 0; k < 3; k++) {
+    double t = place_of(row, n) + .5 * (k - 1) * row->length;
+    if (!in_picture(&f->chart, f->unit, row->u + t * row->a, row->v + t * row->b, &x[k], &y[k],
+                    &w) ||
+        !is_seen(f, x[k], y[k]))
+      return false;
+  }
+  return hypot(x[2] - x[0], y[2] - y[0]) >= LEAST_SEEN_PX;
+}
+
+static bool is_there(const finder *f, const rc_dash_row *row, int n) {
+  for (int i = 0; i < f->dashes.count; i++) {
+    const rc_dash *d = &f->dashes.found[i];
+    if (lies_on(row, d) &&
+        fabs(along(row, d->u, d->v) - place_of(row, n)) < .5 * (row->length + d->length))
+      return true;
+  }
+  return false;
+}
+
+static bool is_missing(const finder *f, const rc_dash_row *row, int n) {
+  return would_be_seen(f, row, n) && !is_there(f, row, n);
+}
+
+/* Counts what is seen, and stands out, at a place so far along the row and off it. */
+static void look(const finder *f, const rc_dash_row *row, double t, double side, looked *l) {
+  double u = row->u + t * row->a - side * row->b, v = row->v + t * row->b + side * row->a, x, y, w;
+  if (!in_picture(&f->chart, f->unit, u, v, &x, &y, &w) || !is_seen(f, x, y)) return;
+  int px = (int)floor(x + .5), py = (int)floor(y + .5);
+  double off = (double)f->dashes.off[(size_t)py * (size_t)f->dashes.width + (size_t)px];
+  l->seen++, l->stands_out += fabs(off) > PART_OF_CONTRAST * row->contrast;
+}
+
+/* At what lies between a dash and the next. */
+static void look_between(const finder *f, const rc_dash_row *row, int n, looked *l) {
+  double from = place_of(row, n) + GAP_FROM * row->length;
+  double to = place_of(row, n + 1) - GAP_FROM * row->length;
+  for (int k = 0; k < SAMPLES; k++)
+    look(f, row, from + (to - from) * (k + .5) / SAMPLES, 0, l);
+}
+
+/* Whether something lies across an end of the n-th, as the joints of a wall do. */
+static bool is_crossed(const finder *f, const rc_dash_row *row, int n, double end) {
+  for (int i = 0; i < STEPS_ACROSS; i++) {
+    double from_middle = ACROSS_FROM + (ACROSS_TO - ACROSS_FROM) * i / STEPS_ACROSS;
+    looked l = {0, 0};
+    for (int k = 0; k < SAMPLES; k++) {
+      double side = row->length * ((k + .5) / SAMPLES - .5);
+      if (fabs(side) > row->width)
+        look(f, row, place_of(row, n) + end * from_middle * row->length, side, &l);
+    }
+    if (l.seen >= SAMPLES / 4 && l.stands_out > LEAST_ACROSS * l.seen) return true;
+  }
+  return false;
+}
+
+/* Whether paint is all that stands out in it. */
+static bool is_plain(const finder *f, const rc_dash_row *row, int first, int last) {
+  looked l = {0, 0};
+  int crossed = 0;
+  for (int n = first - 1; n <= last; n++) look_between(f, row, n, &l);
+  for (int i = 0; i < row->seen_count; i++)
+    crossed += is_crossed(f, row, row->seen[i], -1) || is_crossed(f, row, row->seen[i], 1);
+  return l.stands_out <= MOST_PART_BETWEEN * l.seen && 2 * crossed <= row->seen_count;
+}
+
+/* How far the row goes. False: too many of its dashes are missing, or something lies between. */
+static bool find_ends(const finder *f, rc_dash_row *row) {
+  int first = row->seen_count ? row->seen[0] : 0, last = first, missing = 0;
+  for (int i = 1; i < row->seen_count; i++) {
+    first = row->seen[i] < first ? row->seen[i] : first;
+    last = row->seen[i] > last ? row->seen[i] : last;
+  }
+  for (int n = first + 1; n < last; n++) missing += is_missing(f, row, n);
+  if (DASHES_PER_MISSING * missing > row->seen_count) return false;
+  if (!is_plain(f, row, first, last)) return false;
+  /* Where it is seen to have ended, between here and there none is sure. */
+  row->low = first - FARTHEST, row->high = last + FARTHEST;
+  for (int n = first - 1; n >= first - FARTHEST; n--)
+    if (is_missing(f, row, n)) {
+      row->low = first;
+      break;
+    }
+  for (int n = last + 1; n <= last + FARTHEST; n++)
+    if (is_missing(f, row, n)) {
+      row->high = last;
+      break;
+    }
+  return true;
+}
+
+/* The line and the period by least squares, a px of the picture being worth the same everywhere. */
+static void refine(const finder *f, rc_dash_row *row) {
+  double weight = 0, mu = 0, mv = 0, uu = 0, uv = 0, vv = 0, s = 0, sn = 0, snn = 0, st = 0, snt = 0;
+  rc_dash_row old = *row;
+  for (int pass = 0; pass < 2; pass++)
+    for (int i = 0; i < f->dashes.count; i++) {
+      const rc_dash *d = &f->dashes.found[i];
+      int n;
+      if (!is_one_of(&old, d, &n)) continue;
+      double q = d->w * d->w, du = d->u - mu, dv = d->v - mv;
+      if (!pass) {
+        weight += q, mu += q * (d->u - mu) / weight, mv += q * (d->v - mv) / weight;
+        continue;
+      }
+      uu += q * du * du, uv += q * du * dv, vv += q * dv * dv;
+      double t = along(&old, d->u, d->v), p = q * d->w * d->w;
+      s += p, sn += p * n, snn += p * n * n, st += p * t, snt += p * n * t;
+    }
+  double middle = (uu + vv) / 2, apart = sqrt((uu - vv) * (uu - vv) / 4 + uv * uv);
+  double a = uu > vv ? middle + apart - vv : uv, b = uu > vv ? uv : middle + apart - uu;
+  double norm = sqrt(a * a + b * b), spread = s * snn - sn * sn;
+  if (!(norm > 0) || !(spread > 0)) return;
+  if (a * old.a + b * old.b < 0) norm = -norm;
+  double shift = along(&old, mu, mv); /* the new point's place along the old line */
+  row->u = mu, row->v = mv, row->a = a / norm, row->b = b / norm;
+  row->period = (s * snt - sn * st) / spread;
+  row->first = (st - row->period * sn) / s - shift;
+}
+
+static rc_dash_row row_between(const rc_dash *p, const rc_dash *q) {
+  double du = q->u - p->u, dv = q->v - p->v, period = sqrt(du * du + dv * dv);
+  return (rc_dash_row){.u = p->u,
+                       .v = p->v,
+                       .a = du / period,
+                       .b = dv / period,
+                       .period = period,
+                       .length = (p->length + q->length) / 2,
+                       .width = fmax(p->width, q->width),
+                       .contrast = fmin(p->contrast, q->contrast)};
+}
+
+static bool is_taken(const rc_dash_rows *rows, const rc_dash *d) {
+  for (int i = 0; i < rows->count; i++)
+    if (lies_on(&rows->rows[i], d)) return true;
+  return false;
+}
+
+/* The row of most dashes among those that lie in none yet. */
+static bool find_longest(const finder *f, const rc_dash_rows *rows, rc_dash_row *best) {
+  best->seen_count = LEAST_DASHES - 1;
+  for (int i = 0; i < f->dashes.count; i++)
+    for (int k = i + 1; k < f->dashes.count; k++) {
+      const rc_dash *p = &f->dashes.found[i], *q = &f->dashes.found[k];
+      if (!p->complete || !q->complete || is_taken(rows, p) || is_taken(rows, q)) continue;
+      rc_dash_row row = row_between(p, q);
+      if (!alike(&row, p) || !alike(&row, q) || row.period < SHORTEST_PERIOD * row.length ||
+          row.period > LONGEST_PERIOD * row.length)
+        continue;
+      gather(f, &row);
+      if (row.seen_count <= best->seen_count) continue;
+      refine(f, &row);
+      gather(f, &row);
+      if (row.seen_count > best->seen_count && find_ends(f, &row)) *best = row;
+    }
+  return best->seen_count >= LEAST_DASHES;
+}
+
+/* What is seen of one that is cut may be the rest of one of the row's: then its middle is here. */
+static bool middle_of(const rc_dash_row *row, const rc_dash *d, double *u, double *v) {
+  double a = row->a, b = row->b, out = 0;
+  double length = sqrt(12 * (a * a * d->uu + 2 * a * b * d->uv + b * b * d->vv));
+  double width = sqrt(12 * (b * b * d->uu - 2 * a * b * d->uv + a * a * d->vv));
+  *u = d->u, *v = d->v;
+  if (d->complete) return alike(row, d);
+  if (width > MOST_WIDER * row->width ||
+      row->width > MOST_WIDER * width || length > MOST_LONGER * row->length ||
+      length < LEAST_REST * row->length)
+    return false;
+  double to_cut = (d->cut_u - d->u) * a + (d->cut_v - d->v) * b;
+  if (fabs(to_cut) < LEAST_TO_CUT * length) return false; /* it is cut lengthwise */
+  out = fmax(row->length - length, 0) / 2;
+  *u += to_cut > 0 ? out * a : -out * a, *v += to_cut > 0 ? out * b : -out * b;
+  return true;
+}
+
+/* Beside a row that is told, with one dash that is seen or more, or the rest of one. */
+static void find_beside(const finder *f, rc_dash_rows *rows) {
+  int told = rows->count;
+  for (int i = 0; i < told; i++)
+    for (int k = 0; k < f->dashes.count && rows->count < RC_MOST_DASH_ROWS; k++) {
+      const rc_dash *d = &f->dashes.found[k];
+      rc_dash_row row = rows->rows[i];
+      if (is_taken(rows, d) || !middle_of(&row, d, &row.u, &row.v)) continue;
+      row.first = 0;
+      gather(f, &row);
+      if (find_ends(f, &row)) rows->rows[rows->count++] = row;
+    }
+}
+
+/* Three unknowns by least squares: sums of products, the fourth column the right side. False: they
+ * do not tell. */
+static bool solve(double m[3][4]) {
+  for (int k = 0; k < 3; k++) {
+    int best = k;
+    for (int i = k + 1; i < 3; i++)
+      if (fabs(m[i][k]) > fabs(m[best][k])) best = i;
+    for (int j = 0; j < 4; j++) {
+      double kept = m[k][j];
+      m[k][j] = m[best][j], m[best][j] = kept;
+    }
+    if (!(fabs(m[k][k]) > 1e-12)) return false;
+    for (int i = 0; i < 3; i++) {
+      if (i == k) continue;
+      double times = m[i][k] / m[k][k];
+      for (int j = 0; j < 4; j++) m[i][j] -= times * m[k][j];
+    }
+  }
+  for (int k = 0; k < 3; k++) m[k][3] /= m[k][k];
+  return true;
+}
+
+/* Dashes that come again tell where their line vanishes better than the horizon that was given: of
+ * the n-th of places t, t (1 + c n) = first + period n. Corrects the chart, so that in it c = 0.
+ * False: it stays. */
+static bool correct(const finder *f, const rc_dash_row *row, rc_chart *chart) {
+  double m[3][4] = {{0}}, most_off = 0;
+  if (row->seen_count < LEAST_CORRECTING) return false;
+  for (int i = 0; i < f->dashes.count; i++) {
+    const rc_dash *d = &f->dashes.found[i];
+    int n;
+    if (!is_one_of(row, d, &n)) continue;
+    double t = along(row, d->u, d->v), scale = row->period, weight = d->w * d->w * d->w * d->w;
+    double terms[4] = {1, n, -n * t / scale, t / scale};
+    most_off = fmax(most_off, fabs(t - place_of(row, n)));
+    for (int k = 0; k < 3; k++)
+      for (int j = 0; j < 4; j++) m[k][j] += weight * terms[k] * terms[j];
+  }
+  if (most_off < LEAST_OFF * row->period || !solve(m)) return false;
+  double c = m[2][3], from = row->u * row->a + row->v * row->b;
+  double by = -c / (m[1][3] * row->period + c * from);
+  if (!(fabs(by) * f->reach < MOST_CORRECTION)) return false;
+  chart->lx += (float)(by * row->a), chart->ly += (float)(by * row->b);
+  return true;
+}
+
+static recede_status find_in_chart(rc_context *context, const rc_image *image,
+                                   const rc_mask *flags, int exponent, finder *f,
+                                   rc_dash_rows *rows) {
+  f->chart = rc_chart_coarser(rows->chart, exponent);
+  rows->count = 0;
+  RC_TRY(rc_dashes_find(context, image, flags, &rows->chart, exponent, &f->dashes));
+  while (rows->count < RC_MOST_DASH_ROWS && find_longest(f, rows, &rows->rows[rows->count]))
+    rows->count++;
+  return rc_poll(context);
+}
+
+recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, const rc_mask *flags,
+                                const rc_chart *chart, int exponent, rc_dash_rows *rows) {
+  finder f = {.flags = flags, .unit = (double)(1 << exponent)};
+  f.reach = f.unit * rc_longer_side(rc_box_of(flags, RC_TARGET)) / 2;
+  rows->chart = *chart;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(find_in_chart(context, image, flags, exponent, &f, rows));
+  for (int i = 0; i < CORRECTIONS && rows->count && correct(&f, rows->rows, &rows->chart); i++)
+    RC_TRY(find_in_chart(context, image, flags, exponent, &f, rows));
+  find_beside(&f, rows);
+  rc_release(context, mark);
+  return rc_poll(context);
+}
+
+/* Which of a row's dashes a place is part of, or lies beside. False: none. */
+static bool lies_in(const rc_dash_row *row, double u, double v, double w, double margin_px,
+                    int *n) {
+  if (across(row, u, v) > .5 * TIMES_WIDTH * row->width + margin_px / w) return false;
+  double t = along(row, u, v);
+  *n = number_at(row, t);
+  return *n >= row->low && *n <= row->high &&
+         fabs(t - place_of(row, *n)) <= .5 * TIMES_LENGTH * row->length + margin_px / (w * w);
+}
+
+void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *flags) {
+  rc_chart here = rc_chart_coarser(rows->chart, exponent);
+  double unit = (double)(1 << exponent), margin_px = fmax(MARGIN_PX, LEAST_MARGIN_PX * unit);
+  int n;
+  for (int y = 0; y < flags->height && rows->count; y++)
+    for (int x = 0; x < flags->width; x++) {
+      double px = (double)x - (double)here.x0, py = (double)y - (double)here.y0;
+      double w = 1 + (double)here.lx * px + (double)here.ly * py;
+      if (!(*rc_flag(flags, x, y) & RC_SOURCE) || !(w > 0)) continue;
+      for (int i = 0; i < rows->count; i++)
+        if (lies_in(&rows->rows[i], unit * px / w, unit * py / w, w, margin_px, &n))
+          *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
+    }
+}
+
+/* The move, in the plane, that takes a row's n-th dash from the best that is seen. */
+static bool best_move(const rc_dash_rows *rows, const rc_dash_row *row, int n, double *a,
+                      double *b) {
+  const rc_chart *chart = &rows->chart;
+  float least = INFINITY;
+  double x, y, w, there;
+  double u = row->u + place_of(row, n) * row->a, v = row->v + place_of(row, n) * row->b;
+  if (!in_picture(chart, 1, u, v, &x, &y, &w)) return false;
+  for (int i = 0; i < rows->count; i++) {
+    const rc_dash_row *from = &rows->rows[i];
+    rc_dash like = {.a = from->a, .b = from->b, .length = from->length};
+    if (!alike(row, &like)) continue;
+    for (int k = 0; k < from->seen_count; k++) {
+      double t = place_of(from, from->seen[k]);
+      double from_u = from->u + t * from->a, from_v = from->v + t * from->b;
+      if (!in_picture(chart, 1, from_u, from_v, &x, &y, &there)) continue;
+      if (there * MOST_COARSE < w || there > MOST_FINE * w) continue;
+      float finer = rc_log2((float)(there / w));
+      float price = (finer < 0 ? -PRICE_COARSE : 1.f) * finer;
+      if (from != row) price += PRICE_OF_OTHER_ROW;
+      if (price >= least) continue;
+      least = price, *a = from_u - u, *b = from_v - v;
+    }
+  }
+  return least < INFINITY;
+}
+
+bool rc_dash_rows_copy(const rc_dash_rows *rows, const rc_chart *chart, float x, float y,
+                       rc_copy *copy) {
+  const rc_chart *own = &rows->chart;
+  float w = 1.f + own->lx * x + own->ly * y;
+  double a = 0, b = 0;
+  int n;
+  for (int i = 0; i < rows->count && w > 0.f; i++) {
+    const rc_dash_row *row = &rows->rows[i];
+    if (!lies_in(row, (double)(x / w), (double)(y / w), (double)w, MARGIN_PX, &n) ||
+        !best_move(rows, row, n, &a, &b))
+      continue;
+    rc_place from = rc_copy_place(own, (rc_copy){(float)a, (float)b, 0.f}, x, y);
+    *copy = rc_copy_exact(chart, x, y, from.x, from.y);
+    return !from.beyond;
+  }
+  return false;
+}

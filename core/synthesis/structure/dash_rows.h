@@ -1,0 +1,41 @@
+/* Rows of dashes that come again along a straight line of the plane: a road's lanes. A patch sees
+ * one dash at the most, and seams may pass between any two. So rows are found around the hole, what
+ * lies in them is copied nowhere else, and in the hole each dash of a row is a copy of one that is
+ * seen. */
+#ifndef RECEDE_SYNTHESIS_STRUCTURE_DASH_ROWS_H
+#define RECEDE_SYNTHESIS_STRUCTURE_DASH_ROWS_H
+
+#include "synthesis/structure/dashes.h"
+
+#define RC_MOST_DASH_ROWS 8
+#define RC_MOST_IN_ROW 24
+
+/* Places and lengths as those of a dash. */
+typedef struct rc_dash_row {
+  double u, v, a, b;    /* a point of its line, and the line's direction, a unit vector */
+  double first, period; /* its n-th dash's middle is first + n period from (u, v) along it */
+  double length, width; /* of its dashes */
+  double contrast;
+  int low, high;            /* which dashes there are, seen or not */
+  int seen[RC_MOST_IN_ROW]; /* those wholly seen */
+  int seen_count;
+} rc_dash_row;
+
+typedef struct rc_dash_rows {
+  rc_chart chart; /* of the finest level, flat: theirs, corrected by what they show */
+  rc_dash_row rows[RC_MOST_DASH_ROWS];
+  int count;
+} rc_dash_rows;
+
+/* image and flags: a level 2^exponent times coarser than the finest, of which chart is, a flat one.
+ */
+recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, const rc_mask *flags,
+                                const rc_chart *chart, int exponent, rc_dash_rows *rows);
+/* Takes RC_SOURCE from a level's pixels that lie in rows. */
+void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *flags);
+/* The copy of a pixel of the finest level, relative to the chart's origin. False: it lies in no row,
+ * or in one of which nothing is seen in a size that will do. */
+bool rc_dash_rows_copy(const rc_dash_rows *rows, const rc_chart *chart, float x, float y,
+                       rc_copy *copy);
+
+#endif

@@ -1,0 +1,35 @@
+/* Dashes: what is brighter than the plane around it and longer than wide, as those of a road. */
+#ifndef RECEDE_SYNTHESIS_STRUCTURE_DASHES_H
+#define RECEDE_SYNTHESIS_STRUCTURE_DASHES_H
+
+#include "image/image.h"
+#include "synthesis/copy.h"
+
+/* More are a texture. */
+#define RC_MOST_DASHES 96
+
+/* Places and lengths are those in the plane, px where w = 1 of the finest level. */
+typedef struct rc_dash {
+  double u, v;          /* its middle */
+  double a, b;          /* a unit vector: the way it is long */
+  double length, width; /* of the rectangle with its moments */
+  double w;             /* at its middle */
+  double contrast;      /* to what lies around */
+  bool complete;        /* nothing of it lies in the hole or out of the picture */
+  double uu, uv, vv;    /* its second moments */
+  double cut_u, cut_v;  /* the middle of where it ends so, if it does */
+} rc_dash;
+
+typedef struct rc_dashes {
+  int width, height; /* of the level */
+  float *off;        /* how far each pixel is from the mean around it; 0: not looked at */
+  rc_dash found[RC_MOST_DASHES];
+  int count; /* 0 where there are too many */
+} rc_dashes;
+
+/* In a level 2^exponent times coarser than the finest, of which chart is; only what is or was a
+ * source is looked at. */
+recede_status rc_dashes_find(rc_context *context, const rc_image *image, const rc_mask *flags,
+                             const rc_chart *chart, int exponent, rc_dashes *dashes);
+
+#endif
