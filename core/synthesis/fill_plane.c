@@ -150,8 +150,9 @@ static recede_status choose_surface(rc_context *context, const rc_problem *probl
 static recede_status find_lines(rc_context *context, rc_descent *e) {
   int from = e->params->engine_lines ? rc_lines_level(e->flags, e->level_count) : -1;
   if (from < 0) return RECEDE_OK;
-  RC_TRY(rc_lines_find(context, &e->images[from], &e->flags[from], from, &e->chart, e->lines,
-                       &e->line_count));
+  for (int n = from; n < e->level_count && n <= from + 1 && !e->line_count; n++)
+    RC_TRY(rc_lines_find(context, &e->images[n], &e->flags[n], n, n > from, &e->chart, e->lines,
+                         &e->line_count));
   RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
                        &e->line_count, &e->rails));
   if (e->params->engine_boundary)

@@ -3,12 +3,9 @@
 #include <math.h>
 
 #include "base/memory.h"
-#include "base/real.h"
+#include "synthesis/structure/dash_row.h"
 
-/* What makes dashes of one row, or of rows side by side, alike. */
-#define MOST_LONGER 1.6
-#define PARALLEL .99 /* cosine of 8 degrees */
-/* They lie on the line within this part of their length, and so many px of the finest level. */
+/* Dashes lie on their line within this part of their length, and so many px of the finest level. */
 #define OFF_LINE .1
 #define OFF_LINE_PX 1.5
 /* And where they are due within this part of the period. */
@@ -44,19 +41,6 @@
 #define MOST_CORRECTION .25
 #define CORRECTIONS 3
 #define FARTHEST 64 /* dashes that are looked for to each side */
-/* A dash is taken, and laid, so many times as wide and long as it is, and so many px of the finest
- * level (at least of the own level) more on each side: the join needs it. */
-#define TIMES_WIDTH 1.3
-#define TIMES_LENGTH 1.1
-#define MARGIN_PX 4.
-#define LEAST_MARGIN_PX 1.
-/* Copies may be so much too coarse, and nearer ones so much too fine; an octave of the former is so
- * much worse. */
-#define MOST_COARSE 2.5
-#define MOST_FINE 6.
-#define PRICE_COARSE 3.f
-/* Its own row's are preferred by so many octaves. */
-#define PRICE_OF_OTHER_ROW .1f
 
 typedef struct finder {
   const rc_mask *flags;
@@ -65,46 +49,21 @@ typedef struct finder {
   rc_dashes dashes;
 } finder;
 
-/* In px of a level. False: beyond the horizon. */
-static bool in_picture(const rc_chart *chart, double unit, double u, double v, double *x, double *y,
-                       double *w) {
-  double divisor = 1 - ((double)chart->lx * u + (double)chart->ly * v) / unit;
-  if (!(divisor > 1e-6)) return false;
-  *w = 1 / divisor;
-  *x = u / unit * *w + (double)chart->x0, *y = v / unit * *w + (double)chart->y0;
-  return true;
-}
-
 typedef struct looked {
   double seen, stands_out; /* places */
 } looked;
 
-static double along(const rc_dash_row *row, double u, double v) {
-  return (u - row->u) * row->a + (v - row->v) * row->b;
-}
-static double across(const rc_dash_row *row, double u, double v) {
-  return fabs((v - row->v) * row->a - (u - row->u) * row->b);
-}
-static double place_of(const rc_dash_row *row, int n) { return row->first + n * row->period; }
-static int number_at(const rc_dash_row *row, double t) {
-  return (int)floor((t - row->first) / row->period + .5);
-}
-
-static bool alike(const rc_dash_row *row, const rc_dash *d) {
-  return d->length < MOST_LONGER * row->length &&
-         row->length < MOST_LONGER * d->length && fabs(d->a * row->a + d->b * row->b) > PARALLEL;
-}
-
 static bool lies_on(const rc_dash_row *row, const rc_dash *d) {
-  return across(row, d->u, d->v) < OFF_LINE * row->length + OFF_LINE_PX / d->w;
+  return rc_dash_across(row, d->u, d->v) < OFF_LINE * row->length + OFF_LINE_PX / d->w;
 }
 
 /* Whether it is wholly seen where the row's n-th is due. */
 static bool is_one_of(const rc_dash_row *row, const rc_dash *d, int *n) {
-  double t = along(row, d->u, d->v);
-  if (!d->complete || !alike(row, d) || !lies_on(row, d)) return false;
-  *n = number_at(row, t);
-  return fabs(t - place_of(row, *n)) <= OFF_PERIOD * row->period;
+  double t = rc_dash_along(row, d->u, d->v);
+  if (!d->complete || !rc_dashes_alike(row, d->length, d->a, d->b) || !lies_on(row, d))
+    return false;
+  *n = rc_dash_number(row, t);
+  return fabs(t - rc_dash_place(row, *n)) <= OFF_PERIOD * row->period;
 }
 
 static void gather(const finder *f, rc_dash_row *row) {
@@ -123,9 +82,9 @@ static bool is_seen(const finder *f, double x, double y) {
 static bool would_be_seen(const finder *f, const rc_dash_row *row, int n) {
   double x[3], y[3], w;
   for (int k = 0; k < 3; k++) {
-    double t = place_of(row, n) + .5 * (k - 1) * row->length;
-    if (!in_picture(&f->chart, f->unit, row->u + t * row->a, row->v + t * row->b, &x[k], &y[k],
-                    &w) ||
+    double t = rc_dash_place(row, n) + .5 * (k - 1) * row->length;
+    if (!rc_dash_in_picture(&f->chart, f->unit, row->u + t * row->a, row->v + t * row->b, &x[k],
+                            &y[k], &w) ||
         !is_seen(f, x[k], y[k]))
       return false;
   }
@@ -135,8 +94,8 @@ static bool would_be_seen(const finder *f, const rc_dash_row *row, int n) {
 static bool is_there(const finder *f, const rc_dash_row *row, int n) {
   for (int i = 0; i < f->dashes.count; i++) {
     const rc_dash *d = &f->dashes.found[i];
-    if (lies_on(row, d) &&
-        fabs(along(row, d->u, d->v) - place_of(row, n)) < .5 * (row->length + d->length))
+    if (lies_on(row, d) && fabs(rc_dash_along(row, d->u, d->v) - rc_dash_place(row, n)) <
+                               .5 * (row->length + d->length))
       return true;
   }
   return false;
@@ -149,7 +108,7 @@ static bool is_missing(const finder *f, const rc_dash_row *row, int n) {
 /* Counts what is seen, and stands out, at a place so far along the row and off it. */
 static void look(const finder *f, const rc_dash_row *row, double t, double side, looked *l) {
   double u = row->u + t * row->a - side * row->b, v = row->v + t * row->b + side * row->a, x, y, w;
-  if (!in_picture(&f->chart, f->unit, u, v, &x, &y, &w) || !is_seen(f, x, y)) return;
+  if (!rc_dash_in_picture(&f->chart, f->unit, u, v, &x, &y, &w) || !is_seen(f, x, y)) return;
   int px = (int)floor(x + .5), py = (int)floor(y + .5);
   double off = (double)f->dashes.off[(size_t)py * (size_t)f->dashes.width + (size_t)px];
   l->seen++, l->stands_out += fabs(off) > PART_OF_CONTRAST * row->contrast;
@@ -157,10 +116,9 @@ static void look(const finder *f, const rc_dash_row *row, double t, double side,
 
 /* At what lies between a dash and the next. */
 static void look_between(const finder *f, const rc_dash_row *row, int n, looked *l) {
-  double from = place_of(row, n) + GAP_FROM * row->length;
-  double to = place_of(row, n + 1) - GAP_FROM * row->length;
-  for (int k = 0; k < SAMPLES; k++)
-    look(f, row, from + (to - from) * (k + .5) / SAMPLES, 0, l);
+  double from = rc_dash_place(row, n) + GAP_FROM * row->length;
+  double to = rc_dash_place(row, n + 1) - GAP_FROM * row->length;
+  for (int k = 0; k < SAMPLES; k++) look(f, row, from + (to - from) * (k + .5) / SAMPLES, 0, l);
 }
 
 /* Whether something lies across an end of the n-th, as the joints of a wall do. */
@@ -171,7 +129,7 @@ static bool is_crossed(const finder *f, const rc_dash_row *row, int n, double en
     for (int k = 0; k < SAMPLES; k++) {
       double side = row->length * ((k + .5) / SAMPLES - .5);
       if (fabs(side) > row->width)
-        look(f, row, place_of(row, n) + end * from_middle * row->length, side, &l);
+        look(f, row, rc_dash_place(row, n) + end * from_middle * row->length, side, &l);
     }
     if (l.seen >= SAMPLES / 4 && l.stands_out > LEAST_ACROSS * l.seen) return true;
   }
@@ -215,7 +173,8 @@ static bool find_ends(const finder *f, rc_dash_row *row) {
 
 /* The line and the period by least squares, a px of the picture being worth the same everywhere. */
 static void refine(const finder *f, rc_dash_row *row) {
-  double weight = 0, mu = 0, mv = 0, uu = 0, uv = 0, vv = 0, s = 0, sn = 0, snn = 0, st = 0, snt = 0;
+  double weight = 0, mu = 0, mv = 0, uu = 0, uv = 0, vv = 0, s = 0, sn = 0, snn = 0, st = 0,
+         snt = 0;
   rc_dash_row old = *row;
   for (int pass = 0; pass < 2; pass++)
     for (int i = 0; i < f->dashes.count; i++) {
@@ -228,7 +187,7 @@ static void refine(const finder *f, rc_dash_row *row) {
         continue;
       }
       uu += q * du * du, uv += q * du * dv, vv += q * dv * dv;
-      double t = along(&old, d->u, d->v), p = q * d->w * d->w;
+      double t = rc_dash_along(&old, d->u, d->v), p = q * d->w * d->w;
       s += p, sn += p * n, snn += p * n * n, st += p * t, snt += p * n * t;
     }
   double middle = (uu + vv) / 2, apart = sqrt((uu - vv) * (uu - vv) / 4 + uv * uv);
@@ -236,7 +195,7 @@ static void refine(const finder *f, rc_dash_row *row) {
   double norm = sqrt(a * a + b * b), spread = s * snn - sn * sn;
   if (!(norm > 0) || !(spread > 0)) return;
   if (a * old.a + b * old.b < 0) norm = -norm;
-  double shift = along(&old, mu, mv); /* the new point's place along the old line */
+  double shift = rc_dash_along(&old, mu, mv); /* the new point's place along the old line */
   row->u = mu, row->v = mv, row->a = a / norm, row->b = b / norm;
   row->period = (s * snt - sn * st) / spread;
   row->first = (st - row->period * sn) / s - shift;
@@ -268,8 +227,9 @@ static bool find_longest(const finder *f, const rc_dash_rows *rows, rc_dash_row 
       const rc_dash *p = &f->dashes.found[i], *q = &f->dashes.found[k];
       if (!p->complete || !q->complete || is_taken(rows, p) || is_taken(rows, q)) continue;
       rc_dash_row row = row_between(p, q);
-      if (!alike(&row, p) || !alike(&row, q) || row.period < SHORTEST_PERIOD * row.length ||
-          row.period > LONGEST_PERIOD * row.length)
+      if (!rc_dashes_alike(&row, p->length, p->a, p->b) ||
+          !rc_dashes_alike(&row, q->length, q->a, q->b) ||
+          row.period < SHORTEST_PERIOD * row.length || row.period > LONGEST_PERIOD * row.length)
         continue;
       gather(f, &row);
       if (row.seen_count <= best->seen_count) continue;
@@ -286,10 +246,9 @@ static bool middle_of(const rc_dash_row *row, const rc_dash *d, double *u, doubl
   double length = sqrt(12 * (a * a * d->uu + 2 * a * b * d->uv + b * b * d->vv));
   double width = sqrt(12 * (b * b * d->uu - 2 * a * b * d->uv + a * a * d->vv));
   *u = d->u, *v = d->v;
-  if (d->complete) return alike(row, d);
-  if (width > MOST_WIDER * row->width ||
-      row->width > MOST_WIDER * width || length > MOST_LONGER * row->length ||
-      length < LEAST_REST * row->length)
+  if (d->complete) return rc_dashes_alike(row, d->length, d->a, d->b);
+  if (width > MOST_WIDER * row->width || row->width > MOST_WIDER * width ||
+      length > RC_DASHES_MOST_LONGER * row->length || length < LEAST_REST * row->length)
     return false;
   double to_cut = (d->cut_u - d->u) * a + (d->cut_v - d->v) * b;
   if (fabs(to_cut) < LEAST_TO_CUT * length) return false; /* it is cut lengthwise */
@@ -344,9 +303,10 @@ static bool correct(const finder *f, const rc_dash_row *row, rc_chart *chart) {
     const rc_dash *d = &f->dashes.found[i];
     int n;
     if (!is_one_of(row, d, &n)) continue;
-    double t = along(row, d->u, d->v), scale = row->period, weight = d->w * d->w * d->w * d->w;
+    double t = rc_dash_along(row, d->u, d->v), scale = row->period,
+           weight = d->w * d->w * d->w * d->w;
     double terms[4] = {1, n, -n * t / scale, t / scale};
-    most_off = fmax(most_off, fabs(t - place_of(row, n)));
+    most_off = fmax(most_off, fabs(t - rc_dash_place(row, n)));
     for (int k = 0; k < 3; k++)
       for (int j = 0; j < 4; j++) m[k][j] += weight * terms[k] * terms[j];
   }
@@ -358,9 +318,8 @@ static bool correct(const finder *f, const rc_dash_row *row, rc_chart *chart) {
   return true;
 }
 
-static recede_status find_in_chart(rc_context *context, const rc_image *image,
-                                   const rc_mask *flags, int exponent, finder *f,
-                                   rc_dash_rows *rows) {
+static recede_status find_in_chart(rc_context *context, const rc_image *image, const rc_mask *flags,
+                                   int exponent, finder *f, rc_dash_rows *rows) {
   f->chart = rc_chart_coarser(rows->chart, exponent);
   rows->count = 0;
   RC_TRY(rc_dashes_find(context, image, flags, &rows->chart, exponent, &f->dashes));
@@ -381,74 +340,4 @@ recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, cons
   find_beside(&f, rows);
   rc_release(context, mark);
   return rc_poll(context);
-}
-
-/* Which of a row's dashes a place is part of, or lies beside. False: none. */
-static bool lies_in(const rc_dash_row *row, double u, double v, double w, double margin_px,
-                    int *n) {
-  if (across(row, u, v) > .5 * TIMES_WIDTH * row->width + margin_px / w) return false;
-  double t = along(row, u, v);
-  *n = number_at(row, t);
-  return *n >= row->low && *n <= row->high &&
-         fabs(t - place_of(row, *n)) <= .5 * TIMES_LENGTH * row->length + margin_px / (w * w);
-}
-
-void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *flags) {
-  rc_chart here = rc_chart_coarser(rows->chart, exponent);
-  double unit = (double)(1 << exponent), margin_px = fmax(MARGIN_PX, LEAST_MARGIN_PX * unit);
-  int n;
-  for (int y = 0; y < flags->height && rows->count; y++)
-    for (int x = 0; x < flags->width; x++) {
-      double px = (double)x - (double)here.x0, py = (double)y - (double)here.y0;
-      double w = 1 + (double)here.lx * px + (double)here.ly * py;
-      if (!(*rc_flag(flags, x, y) & RC_SOURCE) || !(w > 0)) continue;
-      for (int i = 0; i < rows->count; i++)
-        if (lies_in(&rows->rows[i], unit * px / w, unit * py / w, w, margin_px, &n))
-          *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
-    }
-}
-
-/* The move, in the plane, that takes a row's n-th dash from the best that is seen. */
-static bool best_move(const rc_dash_rows *rows, const rc_dash_row *row, int n, double *a,
-                      double *b) {
-  const rc_chart *chart = &rows->chart;
-  float least = INFINITY;
-  double x, y, w, there;
-  double u = row->u + place_of(row, n) * row->a, v = row->v + place_of(row, n) * row->b;
-  if (!in_picture(chart, 1, u, v, &x, &y, &w)) return false;
-  for (int i = 0; i < rows->count; i++) {
-    const rc_dash_row *from = &rows->rows[i];
-    rc_dash like = {.a = from->a, .b = from->b, .length = from->length};
-    if (!alike(row, &like)) continue;
-    for (int k = 0; k < from->seen_count; k++) {
-      double t = place_of(from, from->seen[k]);
-      double from_u = from->u + t * from->a, from_v = from->v + t * from->b;
-      if (!in_picture(chart, 1, from_u, from_v, &x, &y, &there)) continue;
-      if (there * MOST_COARSE < w || there > MOST_FINE * w) continue;
-      float finer = rc_log2((float)(there / w));
-      float price = (finer < 0 ? -PRICE_COARSE : 1.f) * finer;
-      if (from != row) price += PRICE_OF_OTHER_ROW;
-      if (price >= least) continue;
-      least = price, *a = from_u - u, *b = from_v - v;
-    }
-  }
-  return least < INFINITY;
-}
-
-bool rc_dash_rows_copy(const rc_dash_rows *rows, const rc_chart *chart, float x, float y,
-                       rc_copy *copy) {
-  const rc_chart *own = &rows->chart;
-  float w = 1.f + own->lx * x + own->ly * y;
-  double a = 0, b = 0;
-  int n;
-  for (int i = 0; i < rows->count && w > 0.f; i++) {
-    const rc_dash_row *row = &rows->rows[i];
-    if (!lies_in(row, (double)(x / w), (double)(y / w), (double)w, MARGIN_PX, &n) ||
-        !best_move(rows, row, n, &a, &b))
-      continue;
-    rc_place from = rc_copy_place(own, (rc_copy){(float)a, (float)b, 0.f}, x, y);
-    *copy = rc_copy_exact(chart, x, y, from.x, from.y);
-    return !from.beyond;
-  }
-  return false;
 }

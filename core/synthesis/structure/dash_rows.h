@@ -33,8 +33,8 @@ recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, cons
                                 const rc_chart *chart, int exponent, rc_dash_rows *rows);
 /* Takes RC_SOURCE from a level's pixels that lie in rows. */
 void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *flags);
-/* The copy of a pixel of the finest level, relative to the chart's origin. False: it lies in no row,
- * or in one of which nothing is seen in a size that will do. */
+/* The copy of a pixel of the finest level, relative to the chart's origin. False: it lies in no
+ * row, or in one of which nothing is seen in a size that will do. */
 bool rc_dash_rows_copy(const rc_dash_rows *rows, const rc_chart *chart, float x, float y,
                        rc_copy *copy);
 

@@ -41,7 +41,8 @@ static float w_at(const finder *f, int x, int y) {
 
 static bool is_looked_at(const finder *f, int x, int y) {
   float w = w_at(f, x, y);
-  return (*rc_flag(f->flags, x, y) & (RC_SOURCE | RC_ALLOWED)) && w > 1 / WIDEST_RATIO && w < WIDEST_RATIO;
+  return (*rc_flag(f->flags, x, y) & (RC_SOURCE | RC_ALLOWED)) && w > 1 / WIDEST_RATIO &&
+         w < WIDEST_RATIO;
 }
 
 static void sum_up(const finder *f) {
@@ -161,19 +162,19 @@ static bool is_dash(const finder *f, const moments *m, rc_dash *dash) {
   if (!(norm > 0) || (!(m->cut > 0) && length < LEAST_ELONGATION * width)) return false;
   double lu = ((double)f->chart.lx * u + (double)f->chart.ly * v) / (double)f->unit;
   *dash = (rc_dash){.u = u,
-                         .v = v,
-                         .a = a / norm,
-                         .b = b / norm,
-                         .length = length,
-                         .width = width,
-                         .w = 1 / (1 - lu), /* of X / w = q: w = 1 + w (l . q) */
-                         .contrast = m->off / m->pixels,
-                         .complete = !(m->cut > 0),
-                     .uu = uu,
-                     .uv = uv,
-                     .vv = vv,
-                     .cut_u = m->cut > 0 ? m->cut_u / m->cut : u,
-                     .cut_v = m->cut > 0 ? m->cut_v / m->cut : v};
+                    .v = v,
+                    .a = a / norm,
+                    .b = b / norm,
+                    .length = length,
+                    .width = width,
+                    .w = 1 / (1 - lu), /* of X / w = q: w = 1 + w (l . q) */
+                    .contrast = m->off / m->pixels,
+                    .complete = !(m->cut > 0),
+                    .uu = uu,
+                    .uv = uv,
+                    .vv = vv,
+                    .cut_u = m->cut > 0 ? m->cut_u / m->cut : u,
+                    .cut_v = m->cut > 0 ? m->cut_v / m->cut : v};
   return true;
 }
 
@@ -194,7 +195,7 @@ static recede_status collect_all(rc_context *context, const finder *f, rc_dashes
 }
 
 recede_status rc_dashes_find(rc_context *context, const rc_image *image, const rc_mask *flags,
-                            const rc_chart *chart, int exponent, rc_dashes *dashes) {
+                             const rc_chart *chart, int exponent, rc_dashes *dashes) {
   finder f = {.image = image,
               .flags = flags,
               .chart = rc_chart_coarser(*chart, exponent),

@@ -25,6 +25,10 @@
 /* Another tone, as in the shadow of a rail, costs this per square of the line's own deviation. */
 #define PRICE_OF_TONE .5f
 #define LEAST_OF_PIECE -.5f
+/* Where a line leaves the hole at a flat angle it has the hole on one side: its sources begin so
+ * much farther away, or farther. */
+#define FARTHER_PX 10.f
+#define FARTHEST_PX 30.f
 /* Sources may be this much larger or smaller than what they fill. */
 #define WIDEST_RATIO 1.7f
 
@@ -34,6 +38,7 @@ typedef struct frame {
   const rc_chart *chart;
   rc_crossing *line;
   float length;
+  float farther_px; /* than from right beside the hole its sources lie */
 } frame;
 
 static void set_frame(frame *f) {
@@ -94,7 +99,7 @@ static bool goes_on(const frame *f, float outwards, float x, float y, const rc_p
 static bool straight_source(const frame *f, float split, float t, float *x, float *y) {
   const rc_crossing *c = f->line;
   rc_chart flat = rc_chart_flat(*f->chart);
-  float margin = (RC_PROFILE_FROM_PX + RC_PATCH_RADIUS) / f->length;
+  float margin = (RC_PROFILE_FROM_PX + RC_PATCH_RADIUS + f->farther_px) / f->length;
   float to = t < split ? -margin : 1 + margin, dx = c->bx - c->ax, dy = c->by - c->ay;
   float ax = c->ax - flat.x0, ay = c->ay - flat.y0;
   rc_copy copy =
@@ -170,11 +175,12 @@ bool rc_follow(const rc_seen *picture, const rc_chart *chart, bool alone, rc_cro
   if (alone &&
       (!goes_on(&f, -1, line->ax, line->ay, &own_a) || !goes_on(&f, 1, line->bx, line->by, &own_b)))
     return false;
-  for (size_t i = 0; i < sizeof splits / sizeof *splits; i++) {
-    float kept = follow_both(&f, splits[i], &own_a, &own_b);
-    if (kept <= most) continue;
-    most = kept, best = *line, found = true;
-  }
+  for (; f.farther_px <= FARTHEST_PX && !found; f.farther_px += FARTHER_PX)
+    for (size_t i = 0; i < sizeof splits / sizeof *splits; i++) {
+      float kept = follow_both(&f, splits[i], &own_a, &own_b);
+      if (kept <= most) continue;
+      most = kept, best = *line, found = true;
+    }
   if (found) *line = best;
   return found;
 }

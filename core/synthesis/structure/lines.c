@@ -15,10 +15,8 @@
 #define DIRECTIONS 128
 /* Lines are looked for at the finest level whose hole has at most so many border pixels. */
 #define MOST_BORDER 800
-/* Signal to noise on both sides. Edges of stones reach 7, so one line must have more, and those
- * parallel to it, which are less likely there by chance, a little. */
+/* Signal to noise on both sides. Edges of stones reach 7. */
 #define LEAST_STRENGTH 8.f
-#define LEAST_LEADING_STRENGTH 12.f
 /* But large stones have straight edges of 20 to 100, and one may by chance point at another: where
  * more than this part of the rest of the hole's border has a line as strong, one alone is none. A
  * stone .17; cracks and a row of tiles .02 to .08. */
@@ -28,7 +26,6 @@
 #define LEAST_LIKENESS .85f
 #define MOST_UNLIKE 4.f
 #define STRAIGHT .9945f /* cosine of 6 degrees: both runs and what connects them */
-#define PARALLEL .9976f /* of 4 degrees, in the plane */
 #define SHORTEST_PX 12.f
 /* Of a marking wider than half a profile both edges are kept. */
 #define LEAST_RISE .8f
@@ -169,21 +166,6 @@ static void refine(const finder *f, rc_crossing *c) {
   }
 }
 
-float rc_crossing_distance(const rc_crossing *line, float x, float y) {
-  float dx = line->bx - line->ax, dy = line->by - line->ay;
-  return fabsf((x - line->ax) * dy - (y - line->ay) * dx) / sqrtf(dx * dx + dy * dy);
-}
-
-rc_crossing rc_crossing_coarser(rc_crossing line, int exponent) {
-  float unit = rc_exp2((float)exponent), *ends[] = {&line.ax, &line.ay, &line.bx, &line.by};
-  for (int k = 0; k < 4; k++) *ends[k] = (*ends[k] + .5f) / unit - .5f;
-  for (int k = 0; k < RC_LINE_PIECES; k++) {
-    line.from_x[k] = (line.from_x[k] + .5f) / unit - .5f;
-    line.from_y[k] = (line.from_y[k] + .5f) / unit - .5f;
-  }
-  return line;
-}
-
 static bool run_into_one_another(const rc_crossing *p, const rc_crossing *q) {
   return rc_crossing_distance(p, q->ax, q->ay) <= RC_PROFILE ||
          rc_crossing_distance(p, q->bx, q->by) <= RC_PROFILE;
@@ -261,39 +243,6 @@ static void pair_up(const finder *f, rc_crossing lines[RC_MOST_LINES], int *coun
       if (c.strength >= LEAST_STRENGTH) keep(lines, count, c);
     }
   }
-}
-
-rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *c) {
-  rc_chart flat = rc_chart_flat(*chart);
-  rc_copy d =
-      rc_copy_between(&flat, c->ax - flat.x0, c->ay - flat.y0, c->bx - flat.x0, c->by - flat.y0);
-  float length = sqrtf(d.a * d.a + d.b * d.b);
-  return (rc_copy){d.a / length, d.b / length, 0.f};
-}
-
-bool rc_parallel_in_plane(rc_copy p, rc_copy q) { return fabsf(p.a * q.a + p.b * q.b) > PARALLEL; }
-
-float rc_crossing_length(const rc_crossing *c) {
-  float dx = c->bx - c->ax, dy = c->by - c->ay;
-  return sqrtf(dx * dx + dy * dy);
-}
-
-/* Keeps one direction, that of the greatest length together: where two would cross, each needs
- * another copy. */
-static void keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES], int *count) {
-  rc_copy directions[RC_MOST_LINES];
-  float most = 0;
-  int leading = -1, kept = 0;
-  for (int i = 0; i < *count; i++) directions[i] = rc_crossing_direction(chart, &lines[i]);
-  for (int i = 0; i < *count && lines[i].strength >= LEAST_LEADING_STRENGTH; i++) {
-    float sum = 0;
-    for (int k = 0; k < *count; k++)
-      if (rc_parallel_in_plane(directions[i], directions[k])) sum += rc_crossing_length(&lines[k]);
-    if (sum > most) most = sum, leading = i;
-  }
-  for (int i = 0; i < *count && leading >= 0; i++)
-    if (rc_parallel_in_plane(directions[i], directions[leading])) lines[kept++] = lines[i];
-  *count = kept;
 }
 
 /* Keeps what can be continued, in px of the finest level. One must go on by itself, and vouches for
@@ -381,16 +330,17 @@ recede_status rc_lines_at(rc_context *context, const rc_seen *seen,
 }
 
 recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc_mask *mask,
-                            int exponent, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
-                            int *count) {
+                            int exponent, bool corners, const rc_chart *chart,
+                            rc_crossing lines[RC_MOST_LINES], int *count) {
   static const float grey[3] = {1, 0, 0}, colours[3] = {.3f, .59f, .11f};
   const float *axis = image->channels == 1 ? grey : colours;
   rc_seen seen;
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_see(context, image, mask, axis, &seen));
   RC_TRY(rc_lines_at(context, &seen, lines, count));
+  if (corners) rc_crossings_keep_corners(mask, lines, count);
   rc_chart here = rc_chart_coarser(*chart, exponent);
-  keep_parallel(&here, lines, count);
+  rc_crossings_keep_parallel(&here, lines, count);
   follow(&seen, &here, exponent, lines, count);
   if (*count == 1 && lines->as_strong > MOST_AS_STRONG) *count = 0;
   for (int i = 0; i < *count; i++) memcpy(lines[i].axis, axis, sizeof lines[i].axis);

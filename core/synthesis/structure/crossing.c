@@ -1,0 +1,75 @@
+#include "synthesis/structure/crossing.h"
+
+#include <math.h>
+
+#include "base/real.h"
+
+/* Signal to noise of one that the others may be parallel to. */
+#define LEAST_LEADING_STRENGTH 12.f
+#define PARALLEL .9976f    /* cosine of 4 degrees, in the plane */
+#define MOST_OF_CORNER .1f /* of the hole */
+
+float rc_crossing_distance(const rc_crossing *line, float x, float y) {
+  float dx = line->bx - line->ax, dy = line->by - line->ay;
+  return fabsf((x - line->ax) * dy - (y - line->ay) * dx) / sqrtf(dx * dx + dy * dy);
+}
+
+rc_crossing rc_crossing_coarser(rc_crossing line, int exponent) {
+  float unit = rc_exp2((float)exponent), *ends[] = {&line.ax, &line.ay, &line.bx, &line.by};
+  for (int k = 0; k < 4; k++) *ends[k] = (*ends[k] + .5f) / unit - .5f;
+  for (int k = 0; k < RC_LINE_PIECES; k++) {
+    line.from_x[k] = (line.from_x[k] + .5f) / unit - .5f;
+    line.from_y[k] = (line.from_y[k] + .5f) / unit - .5f;
+  }
+  return line;
+}
+
+rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *c) {
+  rc_chart flat = rc_chart_flat(*chart);
+  rc_copy d =
+      rc_copy_between(&flat, c->ax - flat.x0, c->ay - flat.y0, c->bx - flat.x0, c->by - flat.y0);
+  float length = sqrtf(d.a * d.a + d.b * d.b);
+  return (rc_copy){d.a / length, d.b / length, 0.f};
+}
+
+bool rc_parallel_in_plane(rc_copy p, rc_copy q) { return fabsf(p.a * q.a + p.b * q.b) > PARALLEL; }
+
+float rc_crossing_length(const rc_crossing *c) {
+  float dx = c->bx - c->ax, dy = c->by - c->ay;
+  return sqrtf(dx * dx + dy * dy);
+}
+
+void rc_crossings_keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
+                                int *count) {
+  rc_copy directions[RC_MOST_LINES];
+  float most = 0;
+  int leading = -1, kept = 0;
+  for (int i = 0; i < *count; i++) directions[i] = rc_crossing_direction(chart, &lines[i]);
+  for (int i = 0; i < *count && lines[i].strength >= LEAST_LEADING_STRENGTH; i++) {
+    float sum = 0;
+    for (int k = 0; k < *count; k++)
+      if (rc_parallel_in_plane(directions[i], directions[k])) sum += rc_crossing_length(&lines[k]);
+    if (sum > most) most = sum, leading = i;
+  }
+  for (int i = 0; i < *count && leading >= 0; i++)
+    if (rc_parallel_in_plane(directions[i], directions[leading])) lines[kept++] = lines[i];
+  *count = kept;
+}
+
+void rc_crossings_keep_corners(const rc_mask *flags, rc_crossing lines[RC_MOST_LINES], int *count) {
+  rc_box box = rc_box_of(flags, RC_TARGET);
+  int kept = 0;
+  for (int i = 0; i < *count; i++) {
+    const rc_crossing *c = &lines[i];
+    int pixels = 0, left = 0;
+    for (int y = box.y0; y < box.y1; y++)
+      for (int x = box.x0; x < box.x1; x++) {
+        if (!(*rc_flag(flags, x, y) & RC_TARGET)) continue;
+        pixels++;
+        left += ((float)x - c->ax) * (c->by - c->ay) > ((float)y - c->ay) * (c->bx - c->ax);
+      }
+    int lesser = left < pixels - left ? left : pixels - left;
+    if ((float)lesser < MOST_OF_CORNER * (float)pixels) lines[kept++] = *c;
+  }
+  *count = kept;
+}

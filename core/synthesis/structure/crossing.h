@@ -1,0 +1,41 @@
+/* A line that crosses the hole: where it does, what it looks like there, and where the texture along
+ * it comes from. */
+#ifndef RECEDE_SYNTHESIS_STRUCTURE_CROSSING_H
+#define RECEDE_SYNTHESIS_STRUCTURE_CROSSING_H
+
+#include "image/image.h"
+#include "synthesis/copy.h"
+
+#define RC_MOST_LINES 8
+#define RC_LINE_PIECES 8
+
+/* Signal to noise of what is no chance: markings and kerbs have 100 and more. */
+#define RC_CLEAR_STRENGTH 100.f
+
+/* A line from the hole's border at a to that at b, px of the finest level. */
+typedef struct rc_crossing {
+  float ax, ay, bx, by;
+  float strength;  /* signal to noise of its weaker side */
+  float rise;      /* -1..1: how far a is a step across */
+  float as_strong; /* the part of the rest of the hole's border where some line is as strong */
+  float axis[3];   /* the weights of colours it was seen by */
+  float from_x[RC_LINE_PIECES], from_y[RC_LINE_PIECES]; /* where each piece's middle comes from */
+} rc_crossing;
+
+float rc_crossing_length(const rc_crossing *line);
+/* Distance of (x, y) from the line, however far beyond its ends. */
+float rc_crossing_distance(const rc_crossing *line, float x, float y);
+/* Its direction in the plane, a unit vector. chart: of the same level. */
+rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *line);
+/* Of two such directions, within 4 degrees. */
+bool rc_parallel_in_plane(rc_copy a, rc_copy b);
+/* The same line in px of a level 2^exponent times coarser; a negative exponent: finer. */
+rc_crossing rc_crossing_coarser(rc_crossing line, int exponent);
+/* Of so many lines keeps one direction, that of the greatest length together: where two would
+ * cross, each needs another copy. chart: of the same level. */
+void rc_crossings_keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
+                                int *count);
+/* Keeps those that have nearly all of the hole on one side. flags: of the same level. */
+void rc_crossings_keep_corners(const rc_mask *flags, rc_crossing lines[RC_MOST_LINES], int *count);
+
+#endif
