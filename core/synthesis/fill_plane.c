@@ -147,12 +147,13 @@ static recede_status choose_surface(rc_context *context, const rc_problem *probl
 }
 
 /* Lines that cross the hole, and whether the texture runs along them. */
-static recede_status find_lines(rc_context *context, rc_descent *e) {
+static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes, rc_descent *e) {
   int from = e->params->engine_lines ? rc_lines_level(e->flags, e->level_count) : -1;
   if (from < 0) return RECEDE_OK;
   for (int n = from; n < e->level_count && n <= from + 1 && !e->line_count; n++)
     RC_TRY(rc_lines_find(context, &e->images[n], &e->flags[n], n, n > from, &e->chart, e->lines,
                          &e->line_count));
+  rc_dash_rows_drop_lines(dashes, e->lines, &e->line_count);
   RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
                        &e->line_count, &e->rails));
   if (e->params->engine_boundary)
@@ -171,9 +172,13 @@ static recede_status find_dashes(rc_context *context, const rc_problem *problem,
   int from = e->params->engine_dashes && !problem->synthesis
                  ? rc_lines_level(e->flags, e->level_count)
                  : -1;
+  const recede_plane *plane = &problem->plane;
   rc_chart chart = chart_of(problem, false);
   if (from < 0) return RECEDE_OK;
-  return rc_dash_rows_find(context, &e->images[from], &e->flags[from], &chart, from, rows);
+  rc_ground ground = rc_ground_of(
+      &chart, (double)chart.x0 + problem->origin_x - (plane->width - 1) / 2.,
+      (double)chart.y0 + problem->origin_y - (plane->height - 1) / 2., plane->focal_px);
+  return rc_dash_rows_find(context, &e->images[from], &e->flags[from], &ground, from, rows);
 }
 
 /* Two textures in the hole that no line tells apart, or of which one has two edges. */
@@ -310,7 +315,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     e.rails = rc_rails_in_chart(known, &e.chart);
     e.keep_rails = known->kept;
   } else {
-    RC_TRY(find_lines(context, &e));
+    RC_TRY(find_lines(context, &dashes, &e));
     RC_TRY(find_regions(context, &e));
   }
   /* After the lines: a road's own dashes tell whether what crosses the hole repeats. */

@@ -1,5 +1,5 @@
-/* A line that crosses the hole: where it does, what it looks like there, and where the texture along
- * it comes from. */
+/* A line that crosses the hole: where it does, what it looks like there, and where the texture
+ * along it comes from. */
 #ifndef RECEDE_SYNTHESIS_STRUCTURE_CROSSING_H
 #define RECEDE_SYNTHESIS_STRUCTURE_CROSSING_H
 

@@ -7,7 +7,7 @@
 /* A dash is taken, and laid, so many times as wide and long as it is, and so many px of the finest
  * level (at least of the own level) more on each side: the join needs it. */
 #define TIMES_WIDTH 1.3
-#define TIMES_LENGTH 1.1
+#define TIMES_LENGTH 1.3
 #define MARGIN_PX 4.
 #define LEAST_MARGIN_PX 1.
 /* Copies may be so much too coarse, and nearer ones so much too fine; an octave of the former is so
@@ -18,52 +18,56 @@
 /* Its own row's are preferred by so many octaves. */
 #define PRICE_OF_OTHER_ROW .1f
 
-/* Which of a row's dashes a place is part of, or lies beside. False: none. */
-static bool lies_in(const rc_dash_row *row, double u, double v, double w, double margin_px,
-                    int *n) {
-  if (rc_dash_across(row, u, v) > .5 * TIMES_WIDTH * row->width + margin_px / w) return false;
-  double t = rc_dash_along(row, u, v);
+/* Which of a row's dashes a place, x, y in px of the finest level, is part of or lies beside.
+ * False: none. */
+static bool lies_in(const rc_ground *ground, const rc_dash_row *row, double x, double y,
+                    double margin_px, int *n) {
+  double u, v, w, dash_x, dash_y;
+  if (!rc_ground_place(ground, 0, x, y, &u, &v, &w)) return false;
+  double t = rc_dash_along(row, u, v), side = rc_dash_across(row, u, v);
+  double most_side = .5 * TIMES_WIDTH * row->width, most_off = .5 * TIMES_LENGTH * row->length;
   *n = rc_dash_number(row, t);
-  return *n >= row->low && *n <= row->high &&
-         fabs(t - rc_dash_place(row, *n)) <= .5 * TIMES_LENGTH * row->length + margin_px / (w * w);
+  if (*n < row->low || *n > row->high || side > most_side + row->length) return false;
+  /* The dash's place that is next to it. */
+  double due = rc_dash_place(row, *n),
+         sign = (v - row->v) * row->a < (u - row->u) * row->b ? -1 : 1;
+  t = fmin(fmax(t, due - most_off), due + most_off), side = sign * fmin(side, most_side);
+  return rc_ground_px(ground, 0, row->u + t * row->a - side * row->b,
+                      row->v + t * row->b + side * row->a, &dash_x, &dash_y, &w) &&
+         hypot(x - dash_x, y - dash_y) <= margin_px;
 }
 
 void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *flags) {
-  rc_chart here = rc_chart_coarser(rows->chart, exponent);
   double unit = (double)(1 << exponent), margin_px = fmax(MARGIN_PX, LEAST_MARGIN_PX * unit);
   int n;
   for (int y = 0; y < flags->height && rows->count; y++)
-    for (int x = 0; x < flags->width; x++) {
-      double px = (double)x - (double)here.x0, py = (double)y - (double)here.y0;
-      double w = 1 + (double)here.lx * px + (double)here.ly * py;
-      if (!(*rc_flag(flags, x, y) & RC_SOURCE) || !(w > 0)) continue;
-      for (int i = 0; i < rows->count; i++)
-        if (lies_in(&rows->rows[i], unit * px / w, unit * py / w, w, margin_px, &n))
+    for (int x = 0; x < flags->width; x++)
+      for (int i = 0; i < rows->count && *rc_flag(flags, x, y) & RC_SOURCE; i++)
+        if (lies_in(&rows->ground, &rows->rows[i], (x + .5) * unit - .5, (y + .5) * unit - .5,
+                    margin_px, &n))
           *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
-    }
 }
 
-/* The move, in the plane, that takes a row's n-th dash from the best that is seen. */
-static bool best_move(const rc_dash_rows *rows, const rc_dash_row *row, int n, double *a,
-                      double *b) {
-  const rc_chart *chart = &rows->chart;
+/* Where the middle of the best dash that is seen lies, for a row's n-th. */
+static bool best_dash(const rc_dash_rows *rows, const rc_dash_row *row, int n, double *u,
+                      double *v) {
   float least = INFINITY;
-  double x, y, w, there;
-  double u = row->u + rc_dash_place(row, n) * row->a, v = row->v + rc_dash_place(row, n) * row->b;
-  if (!rc_dash_in_picture(chart, 1, u, v, &x, &y, &w)) return false;
+  double x, y, w, there, t = rc_dash_place(row, n);
+  if (!rc_ground_px(&rows->ground, 0, row->u + t * row->a, row->v + t * row->b, &x, &y, &w))
+    return false;
   for (int i = 0; i < rows->count; i++) {
     const rc_dash_row *from = &rows->rows[i];
     if (!rc_dashes_alike(row, from->length, from->a, from->b)) continue;
     for (int k = 0; k < from->seen_count; k++) {
-      double t = rc_dash_place(from, from->seen[k]);
+      t = rc_dash_place(from, from->seen[k]);
       double from_u = from->u + t * from->a, from_v = from->v + t * from->b;
-      if (!rc_dash_in_picture(chart, 1, from_u, from_v, &x, &y, &there)) continue;
+      if (!rc_ground_px(&rows->ground, 0, from_u, from_v, &x, &y, &there)) continue;
       if (there * MOST_COARSE < w || there > MOST_FINE * w) continue;
       float finer = rc_log2((float)(there / w));
       float price = (finer < 0 ? -PRICE_COARSE : 1.f) * finer;
       if (from != row) price += PRICE_OF_OTHER_ROW;
       if (price >= least) continue;
-      least = price, *a = from_u - u, *b = from_v - v;
+      least = price, *u = from_u, *v = from_v;
     }
   }
   return least < INFINITY;
@@ -71,18 +75,41 @@ static bool best_move(const rc_dash_rows *rows, const rc_dash_row *row, int n, d
 
 bool rc_dash_rows_copy(const rc_dash_rows *rows, const rc_chart *chart, float x, float y,
                        rc_copy *copy) {
-  const rc_chart *own = &rows->chart;
-  float w = 1.f + own->lx * x + own->ly * y;
-  double a = 0, b = 0;
+  const rc_ground *ground = &rows->ground;
+  double at_x = (double)x + ground->x0, at_y = (double)y + ground->y0, u, v, from_u = 0, from_v = 0;
+  double from_x, from_y, w;
   int n;
-  for (int i = 0; i < rows->count && w > 0.f; i++) {
+  for (int i = 0; i < rows->count; i++) {
     const rc_dash_row *row = &rows->rows[i];
-    if (!lies_in(row, (double)(x / w), (double)(y / w), (double)w, MARGIN_PX, &n) ||
-        !best_move(rows, row, n, &a, &b))
+    if (!lies_in(ground, row, at_x, at_y, MARGIN_PX, &n) ||
+        !best_dash(rows, row, n, &from_u, &from_v) ||
+        !rc_ground_place(ground, 0, at_x, at_y, &u, &v, &w))
       continue;
-    rc_place from = rc_copy_place(own, (rc_copy){(float)a, (float)b, 0.f}, x, y);
-    *copy = rc_copy_exact(chart, x, y, from.x, from.y);
-    return !from.beyond;
+    double t = rc_dash_place(row, n);
+    u += from_u - row->u - t * row->a, v += from_v - row->v - t * row->b;
+    if (!rc_ground_px(ground, 0, u, v, &from_x, &from_y, &w)) return false;
+    *copy = rc_copy_exact(chart, x, y, (float)(from_x - ground->x0), (float)(from_y - ground->y0));
+    return true;
   }
   return false;
+}
+
+void rc_dash_rows_drop_lines(const rc_dash_rows *rows, rc_crossing lines[RC_MOST_LINES],
+                             int *count) {
+  int kept = 0;
+  for (int i = 0; i < *count; i++) {
+    bool is_row = false;
+    for (int k = 0; k < rows->count; k++) {
+      const rc_dash_row *row = &rows->rows[k];
+      double u[2], v[2], w[2];
+      is_row |= rc_ground_place(&rows->ground, 0, (double)lines[i].ax, (double)lines[i].ay, &u[0],
+                                &v[0], &w[0]) &&
+                rc_ground_place(&rows->ground, 0, (double)lines[i].bx, (double)lines[i].by, &u[1],
+                                &v[1], &w[1]) &&
+                rc_dash_across(row, u[0], v[0]) < row->width + MARGIN_PX / w[0] &&
+                rc_dash_across(row, u[1], v[1]) < row->width + MARGIN_PX / w[1];
+    }
+    if (!is_row) lines[kept++] = lines[i];
+  }
+  *count = kept;
 }

@@ -18,7 +18,9 @@ static inline double rc_dash_across(const rc_dash_row *row, double u, double v) 
   return fabs((v - row->v) * row->a - (u - row->u) * row->b);
 }
 /* Where along it the middle of the n-th is due, and which is due next to a place along it. */
-static inline double rc_dash_place(const rc_dash_row *row, int n) { return row->first + n * row->period; }
+static inline double rc_dash_place(const rc_dash_row *row, int n) {
+  return row->first + n * row->period;
+}
 static inline int rc_dash_number(const rc_dash_row *row, double t) {
   return (int)floor((t - row->first) / row->period + .5);
 }
@@ -28,16 +30,6 @@ static inline bool rc_dashes_alike(const rc_dash_row *row, double length, double
   return length < RC_DASHES_MOST_LONGER * row->length &&
          row->length < RC_DASHES_MOST_LONGER * length &&
          fabs(a * row->a + b * row->b) > RC_DASHES_PARALLEL;
-}
-
-/* A place of the plane in px of a level whose px are so many of the finest; and its w. False: beyond the horizon. */
-static inline bool rc_dash_in_picture(const rc_chart *chart, double unit, double u, double v,
-                                      double *x, double *y, double *w) {
-  double divisor = 1 - ((double)chart->lx * u + (double)chart->ly * v) / unit;
-  if (!(divisor > 1e-6)) return false;
-  *w = 1 / divisor;
-  *x = u / unit * *w + (double)chart->x0, *y = v / unit * *w + (double)chart->y0;
-  return true;
 }
 
 #endif

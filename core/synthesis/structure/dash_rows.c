@@ -44,8 +44,9 @@
 
 typedef struct finder {
   const rc_mask *flags;
-  rc_chart chart;     /* of the level */
-  double unit, reach; /* one of its px, and half of the hole's longer side, in px of the finest */
+  rc_ground ground;
+  int exponent;
+  double reach; /* half of the hole's longer side, px of the finest level */
   rc_dashes dashes;
 } finder;
 
@@ -83,8 +84,8 @@ static bool would_be_seen(const finder *f, const rc_dash_row *row, int n) {
   double x[3], y[3], w;
   for (int k = 0; k < 3; k++) {
     double t = rc_dash_place(row, n) + .5 * (k - 1) * row->length;
-    if (!rc_dash_in_picture(&f->chart, f->unit, row->u + t * row->a, row->v + t * row->b, &x[k],
-                            &y[k], &w) ||
+    if (!rc_ground_px(&f->ground, f->exponent, row->u + t * row->a, row->v + t * row->b, &x[k],
+                      &y[k], &w) ||
         !is_seen(f, x[k], y[k]))
       return false;
   }
@@ -108,7 +109,7 @@ static bool is_missing(const finder *f, const rc_dash_row *row, int n) {
 /* Counts what is seen, and stands out, at a place so far along the row and off it. */
 static void look(const finder *f, const rc_dash_row *row, double t, double side, looked *l) {
   double u = row->u + t * row->a - side * row->b, v = row->v + t * row->b + side * row->a, x, y, w;
-  if (!rc_dash_in_picture(&f->chart, f->unit, u, v, &x, &y, &w) || !is_seen(f, x, y)) return;
+  if (!rc_ground_px(&f->ground, f->exponent, u, v, &x, &y, &w) || !is_seen(f, x, y)) return;
   int px = (int)floor(x + .5), py = (int)floor(y + .5);
   double off = (double)f->dashes.off[(size_t)py * (size_t)f->dashes.width + (size_t)px];
   l->seen++, l->stands_out += fabs(off) > PART_OF_CONTRAST * row->contrast;
@@ -294,9 +295,9 @@ static bool solve(double m[3][4]) {
 }
 
 /* Dashes that come again tell where their line vanishes better than the horizon that was given: of
- * the n-th of places t, t (1 + c n) = first + period n. Corrects the chart, so that in it c = 0.
+ * the n-th of places t, t (1 + c n) = first + period n. Turns the ground until c = 0.
  * False: it stays. */
-static bool correct(const finder *f, const rc_dash_row *row, rc_chart *chart) {
+static bool correct(const finder *f, const rc_dash_row *row, rc_ground *ground) {
   double m[3][4] = {{0}}, most_off = 0;
   if (row->seen_count < LEAST_CORRECTING) return false;
   for (int i = 0; i < f->dashes.count; i++) {
@@ -314,29 +315,30 @@ static bool correct(const finder *f, const rc_dash_row *row, rc_chart *chart) {
   double c = m[2][3], from = row->u * row->a + row->v * row->b;
   double by = -c / (m[1][3] * row->period + c * from);
   if (!(fabs(by) * f->reach < MOST_CORRECTION)) return false;
-  chart->lx += (float)(by * row->a), chart->ly += (float)(by * row->b);
+  *ground = rc_ground_turned(ground, by, row->a, row->b);
   return true;
 }
 
-static recede_status find_in_chart(rc_context *context, const rc_image *image, const rc_mask *flags,
-                                   int exponent, finder *f, rc_dash_rows *rows) {
-  f->chart = rc_chart_coarser(rows->chart, exponent);
+static recede_status find_on_ground(rc_context *context, const rc_image *image,
+                                    const rc_mask *flags, int exponent, finder *f,
+                                    rc_dash_rows *rows) {
+  f->ground = rows->ground;
   rows->count = 0;
-  RC_TRY(rc_dashes_find(context, image, flags, &rows->chart, exponent, &f->dashes));
+  RC_TRY(rc_dashes_find(context, image, flags, &rows->ground, exponent, &f->dashes));
   while (rows->count < RC_MOST_DASH_ROWS && find_longest(f, rows, &rows->rows[rows->count]))
     rows->count++;
   return rc_poll(context);
 }
 
 recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, const rc_mask *flags,
-                                const rc_chart *chart, int exponent, rc_dash_rows *rows) {
-  finder f = {.flags = flags, .unit = (double)(1 << exponent)};
-  f.reach = f.unit * rc_longer_side(rc_box_of(flags, RC_TARGET)) / 2;
-  rows->chart = *chart;
+                                const rc_ground *ground, int exponent, rc_dash_rows *rows) {
+  finder f = {.flags = flags, .exponent = exponent};
+  f.reach = (double)(rc_longer_side(rc_box_of(flags, RC_TARGET)) << exponent) / 2;
+  rows->ground = *ground;
   rc_block *mark = rc_mark(context);
-  RC_TRY(find_in_chart(context, image, flags, exponent, &f, rows));
-  for (int i = 0; i < CORRECTIONS && rows->count && correct(&f, rows->rows, &rows->chart); i++)
-    RC_TRY(find_in_chart(context, image, flags, exponent, &f, rows));
+  RC_TRY(find_on_ground(context, image, flags, exponent, &f, rows));
+  for (int i = 0; i < CORRECTIONS && rows->count && correct(&f, rows->rows, &rows->ground); i++)
+    RC_TRY(find_on_ground(context, image, flags, exponent, &f, rows));
   find_beside(&f, rows);
   rc_release(context, mark);
   return rc_poll(context);

@@ -5,6 +5,7 @@
 #ifndef RECEDE_SYNTHESIS_STRUCTURE_DASH_ROWS_H
 #define RECEDE_SYNTHESIS_STRUCTURE_DASH_ROWS_H
 
+#include "synthesis/structure/crossing.h"
 #include "synthesis/structure/dashes.h"
 
 #define RC_MOST_DASH_ROWS 8
@@ -22,20 +23,22 @@ typedef struct rc_dash_row {
 } rc_dash_row;
 
 typedef struct rc_dash_rows {
-  rc_chart chart; /* of the finest level, flat: theirs, corrected by what they show */
+  rc_ground ground; /* turned by what they show */
   rc_dash_row rows[RC_MOST_DASH_ROWS];
   int count;
 } rc_dash_rows;
 
-/* image and flags: a level 2^exponent times coarser than the finest, of which chart is, a flat one.
- */
+/* image and flags: a level 2^exponent times coarser than the finest. */
 recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, const rc_mask *flags,
-                                const rc_chart *chart, int exponent, rc_dash_rows *rows);
+                                const rc_ground *ground, int exponent, rc_dash_rows *rows);
 /* Takes RC_SOURCE from a level's pixels that lie in rows. */
 void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *flags);
 /* The copy of a pixel of the finest level, relative to the chart's origin. False: it lies in no
  * row, or in one of which nothing is seen in a size that will do. */
 bool rc_dash_rows_copy(const rc_dash_rows *rows, const rc_chart *chart, float x, float y,
                        rc_copy *copy);
+/* Takes out lines that run along a row: it says what they show in the hole. */
+void rc_dash_rows_drop_lines(const rc_dash_rows *rows, rc_crossing lines[RC_MOST_LINES],
+                             int *count);
 
 #endif

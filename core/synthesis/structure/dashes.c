@@ -15,7 +15,7 @@
 #define SQUARE_OF_HOLE .25f
 #define LEAST_SQUARE_PX 4
 /* What is so many times farther or nearer than the hole is not looked at. */
-#define WIDEST_RATIO 6.f
+#define WIDEST_RATIO 6.
 #define LEAST_PIXELS 6
 /* Rectangles with the moments of what a dash covers: a dash of a road is 8 to 20 times as long as
  * wide, and less where it is blurred. */
@@ -25,8 +25,8 @@
 typedef struct finder {
   const rc_image *image;
   const rc_mask *flags;
-  rc_chart chart; /* of the level */
-  float unit;     /* px of the finest level */
+  const rc_ground *ground;
+  int exponent;
   float square_px, least;
   double *sums; /* of source pixels above and left of each */
   int32_t *counts;
@@ -35,14 +35,15 @@ typedef struct finder {
   int32_t *stack;
 } finder;
 
-static float w_at(const finder *f, int x, int y) {
-  return 1.f + f->chart.lx * ((float)x - f->chart.x0) + f->chart.ly * ((float)y - f->chart.y0);
+static double w_at(const finder *f, int x, int y) {
+  double u, v, w;
+  return rc_ground_place(f->ground, f->exponent, x, y, &u, &v, &w) ? w : 0;
 }
 
 static bool is_looked_at(const finder *f, int x, int y) {
-  float w = w_at(f, x, y);
-  return (*rc_flag(f->flags, x, y) & (RC_SOURCE | RC_ALLOWED)) && w > 1 / WIDEST_RATIO &&
-         w < WIDEST_RATIO;
+  if (!(*rc_flag(f->flags, x, y) & (RC_SOURCE | RC_ALLOWED))) return false;
+  double w = w_at(f, x, y);
+  return w > 1 / WIDEST_RATIO && w < WIDEST_RATIO;
 }
 
 static void sum_up(const finder *f) {
@@ -69,7 +70,7 @@ static void compare(const finder *f) {
       float *off = &f->off[(size_t)y * (size_t)width + (size_t)x];
       *off = 0;
       if (!is_looked_at(f, x, y)) continue;
-      int reach = (int)(f->square_px * w_at(f, x, y));
+      int reach = (int)((double)f->square_px * w_at(f, x, y));
       if (reach < LEAST_SQUARE_PX) reach = LEAST_SQUARE_PX;
       size_t x0 = (size_t)clamp(x - reach, width), x1 = (size_t)clamp(x + reach + 1, width);
       size_t top = (size_t)clamp(y - reach, height) * stride;
@@ -99,15 +100,9 @@ typedef struct moments {
   double cut, cut_u, cut_v; /* how many of them end with what is known, and their sums */
 } moments;
 
-static void in_plane(const finder *f, int x, int y, double *u, double *v) {
-  double w = (double)w_at(f, x, y);
-  *u = (double)f->unit * ((double)x - (double)f->chart.x0) / w;
-  *v = (double)f->unit * ((double)y - (double)f->chart.y0) / w;
-}
-
 static void add(const finder *f, int x, int y, float off, moments *m) {
-  double w = (double)w_at(f, x, y), u, v;
-  in_plane(f, x, y, &u, &v);
+  double u, v, w;
+  if (!rc_ground_place(f->ground, f->exponent, x, y, &u, &v, &w)) return;
   double weight = (double)off / (w * w * w); /* a pixel's area in the plane */
   m->weight += weight, m->u += weight * u, m->v += weight * v;
   m->uu += weight * u * u, m->uv += weight * u * v, m->vv += weight * v * v;
@@ -142,8 +137,8 @@ static moments collect(const finder *f, int32_t pixel) {
         f->stack[depth++] = y * width + x;
       }
     if (!cut) continue;
-    double u, v;
-    in_plane(f, hx, hy, &u, &v);
+    double u, v, w;
+    if (!rc_ground_place(f->ground, f->exponent, hx, hy, &u, &v, &w)) continue;
     m.cut++, m.cut_u += u, m.cut_v += v;
   }
   return m;
@@ -160,14 +155,15 @@ static bool is_dash(const finder *f, const moments *m, rc_dash *dash) {
   double length = sqrt(12 * (middle + apart)), width = sqrt(12 * fmax(middle - apart, 0));
   double norm = sqrt(a * a + b * b);
   if (!(norm > 0) || (!(m->cut > 0) && length < LEAST_ELONGATION * width)) return false;
-  double lu = ((double)f->chart.lx * u + (double)f->chart.ly * v) / (double)f->unit;
+  double x_px, y_px, w;
+  if (!rc_ground_px(f->ground, 0, u, v, &x_px, &y_px, &w)) return false;
   *dash = (rc_dash){.u = u,
                     .v = v,
                     .a = a / norm,
                     .b = b / norm,
                     .length = length,
                     .width = width,
-                    .w = 1 / (1 - lu), /* of X / w = q: w = 1 + w (l . q) */
+                    .w = w,
                     .contrast = m->off / m->pixels,
                     .complete = !(m->cut > 0),
                     .uu = uu,
@@ -195,11 +191,11 @@ static recede_status collect_all(rc_context *context, const finder *f, rc_dashes
 }
 
 recede_status rc_dashes_find(rc_context *context, const rc_image *image, const rc_mask *flags,
-                             const rc_chart *chart, int exponent, rc_dashes *dashes) {
+                             const rc_ground *ground, int exponent, rc_dashes *dashes) {
   finder f = {.image = image,
               .flags = flags,
-              .chart = rc_chart_coarser(*chart, exponent),
-              .unit = (float)(1 << exponent),
+              .ground = ground,
+              .exponent = exponent,
               .square_px = SQUARE_OF_HOLE * (float)rc_longer_side(rc_box_of(flags, RC_TARGET))};
   size_t width = (size_t)image->width, height = (size_t)image->height;
   *dashes = (rc_dashes){.width = image->width, .height = image->height};

@@ -3,12 +3,12 @@
 #define RECEDE_SYNTHESIS_STRUCTURE_DASHES_H
 
 #include "image/image.h"
-#include "synthesis/copy.h"
+#include "synthesis/structure/ground.h"
 
 /* More are a texture. */
 #define RC_MOST_DASHES 96
 
-/* Places and lengths are those in the plane, px where w = 1 of the finest level. */
+/* Places and lengths are those on the ground. */
 typedef struct rc_dash {
   double u, v;          /* its middle */
   double a, b;          /* a unit vector: the way it is long */
@@ -27,9 +27,9 @@ typedef struct rc_dashes {
   int count; /* 0 where there are too many */
 } rc_dashes;
 
-/* In a level 2^exponent times coarser than the finest, of which chart is; only what is or was a
- * source is looked at. */
+/* In a level 2^exponent times coarser than the finest; only what is or was a source is looked at.
+ */
 recede_status rc_dashes_find(rc_context *context, const rc_image *image, const rc_mask *flags,
-                             const rc_chart *chart, int exponent, rc_dashes *dashes);
+                             const rc_ground *ground, int exponent, rc_dashes *dashes);
 
 #endif

@@ -1,0 +1,95 @@
+/* A road's dashes come again in the hole where they are due, and nowhere else. */
+#include <math.h>
+
+#include "plane_scene.h"
+
+#define WIDTH 640
+#define HEIGHT 480
+#define SLANT_DEG 74.
+#define TEXEL_PX 20.
+#define LANE 4.5  /* texels from one row to the next */
+#define PERIOD 6. /* and from one dash to the next */
+#define DASH 2.
+#define PAINT .9
+
+/* Beyond this there is no dash. */
+static double end;
+
+/* Asphalt, three rows of dashes and, far to the right, a solid line. */
+static double road(double u, double v, int k) {
+  double grain = noise_at((int)floor(u * 12), (int)floor(v * 12), 40), color = .35 + .08 * grain;
+  double along = v + 1 - PERIOD * floor((v + 1) / PERIOD);
+  bool in_row = fabs(u) < .15 || fabs(fabs(u) - LANE) < .15;
+  if ((in_row && along < DASH && v < end) || fabs(u - 2 * LANE) < .12) color = PAINT;
+  return color + .01 * k;
+}
+
+static picture draw_road(double tilt_deg) {
+  return picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, road, TEXEL_PX, SLANT_DEG, tilt_deg);
+}
+
+typedef struct paint {
+  double right, all; /* pixels that are, or of those that are or should be */
+} paint;
+
+/* In a round hole. */
+static paint painted_right(double tilt_deg, double said_deg, area box, const char *settings) {
+  picture truth = draw_road(tilt_deg);
+  task t = task_new(picture_copy(&truth), settings);
+  paint p = {0, 0};
+  t.params.slant_deg = said_deg, t.params.tilt_deg = tilt_deg;
+  for (int y = box.y0; y < box.y1; y++)
+    for (int x = box.x0; x < box.x1; x++)
+      if (hypot((2. * x + 1 - box.x0 - box.x1) / (box.x1 - box.x0),
+                (2. * y + 1 - box.y0 - box.y1) / (box.y1 - box.y0)) < 1)
+        picture_set(&t.mask, x, y, 0, 1);
+  task_succeeds(&t);
+  task_assert_outside(&t);
+  for (int y = box.y0; y < box.y1; y++)
+    for (int x = box.x0; x < box.x1; x++) {
+      float wanted = picture_get(&truth, x, y, 0), got = picture_get(&t.result, x, y, 0);
+      if (!(picture_get(&t.mask, x, y, 0) > 0) || (wanted > .5f && wanted < .8f)) continue;
+      bool is_paint = wanted > .8f, good = fabsf(got - wanted) < .2f;
+      p.right += is_paint && good, p.all += is_paint || !good;
+    }
+  task_clear(&t);
+  picture_clear(&truth);
+  g_test_message("%s, tilt %.0f, said %.1f, hole at %d,%d: %.0f of %.0f px", settings, tilt_deg,
+                 said_deg, box.x0, box.y0, p.right, p.all);
+  return p;
+}
+
+static const area holes[] = {
+    {250, 130, 390, 260}, {130, 150, 300, 280}, {200, 140, 440, 250}, {250, 200, 400, 350}};
+
+static double part_right(double tilt_deg, double said_deg, const char *settings) {
+  paint sum = {0, 0};
+  for (int i = 0; i < (int)G_N_ELEMENTS(holes); i++) {
+    paint p = painted_right(tilt_deg, said_deg, holes[i], settings);
+    sum.right += p.right, sum.all += p.all;
+  }
+  return sum.right / sum.all;
+}
+
+static void come_again(void) {
+  static const double tilts_deg[] = {0, 30, 90, -160};
+  end = INFINITY;
+  for (int i = 0; i < (int)G_N_ELEMENTS(tilts_deg); i++)
+    g_assert_cmpfloat(part_right(tilts_deg[i], SLANT_DEG, "surface=flat quality=draft"), >, .7);
+  g_assert_cmpfloat(part_right(0, SLANT_DEG, "surface=raised"), >, .7);
+  g_assert_cmpfloat(part_right(0, SLANT_DEG, "engine-dashes=0"), <, .3);
+}
+
+/* They tell better than the given horizon where they vanish. */
+static void correct_the_horizon(void) {
+  end = INFINITY;
+  g_assert_cmpfloat(part_right(0, SLANT_DEG - 1.5, "surface=flat quality=draft"), >, .5);
+  g_assert_cmpfloat(part_right(0, SLANT_DEG + 1.5, "surface=flat quality=draft"), >, .5);
+}
+
+int main(int argc, char **argv) {
+  g_test_init(&argc, &argv, NULL);
+  g_test_add_func("/dashes/come-again", come_again);
+  g_test_add_func("/dashes/horizon", correct_the_horizon);
+  return g_test_run();
+}
