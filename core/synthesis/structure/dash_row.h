@@ -6,6 +6,9 @@
 
 #include "synthesis/structure/dash_rows.h"
 
+/* More are told apart from none. */
+#define RC_DASH_FARTHEST 1000
+
 /* What makes dashes of one row, or of rows side by side, alike. */
 #define RC_DASHES_MOST_LONGER 1.6
 #define RC_DASHES_PARALLEL .99 /* cosine of 8 degrees */
@@ -19,10 +22,11 @@ static inline double rc_dash_across(const rc_dash_row *row, double u, double v) 
 }
 /* Where along it the middle of the n-th is due, and which is due next to a place along it. */
 static inline double rc_dash_place(const rc_dash_row *row, int n) {
-  return row->first + n * row->period;
+  return (row->first + n * row->period) / (1 + n * row->drift);
 }
 static inline int rc_dash_number(const rc_dash_row *row, double t) {
-  return (int)floor((t - row->first) / row->period + .5);
+  double n = (t - row->first) / (row->period - row->drift * t) + .5;
+  return fabs(n) < RC_DASH_FARTHEST ? (int)floor(n) : RC_DASH_FARTHEST;
 }
 
 /* Whether dashes of this length and direction may be of the row, or of one beside it. */

@@ -8,8 +8,12 @@
 /* Dashes lie on their line within this part of their length, and so many px of the finest level. */
 #define OFF_LINE .1
 #define OFF_LINE_PX 1.5
-/* And where they are due within this part of the period. */
-#define OFF_PERIOD .16
+/* And where they are due within this part of the period, less strictly while the ground is not
+ * known; far away, so many px of the level and at the most this part. */
+#define OFF_PERIOD .1
+#define OFF_WHILE_DRIFTING .16
+#define OFF_PLACE_PX 1.5
+#define MOST_OFF_PERIOD .3
 /* The rest of a dash that the hole or the picture's end cuts off is so wide, and of the whole one's
  * length at least so much; it is cut away from its middle by so much of its own. */
 #define MOST_WIDER 1.6
@@ -34,10 +38,9 @@
 #define DASHES_PER_MISSING 4
 /* Shorter ones of the level could be missed. */
 #define LEAST_SEEN_PX 8.
-/* So many of a row tell where their line vanishes, if they are off by more than this part of the
- * period where it was said to: to so much of w at the hole's ends, in so many rounds. */
-#define LEAST_CORRECTING 4
-#define LEAST_OFF .02
+/* So many of a row tell where their line vanishes; corrected is to so much of w at the hole's ends,
+ * in so many rounds. */
+#define LEAST_DRIFTING 4
 #define MOST_CORRECTION .25
 #define CORRECTIONS 3
 #define FARTHEST 64 /* dashes that are looked for to each side */
@@ -46,6 +49,7 @@ typedef struct finder {
   const rc_mask *flags;
   rc_ground ground;
   int exponent;
+  bool drifts;  /* the ground is not known yet */
   double reach; /* half of the hole's longer side, px of the finest level */
   rc_dashes dashes;
 } finder;
@@ -59,18 +63,24 @@ static bool lies_on(const rc_dash_row *row, const rc_dash *d) {
 }
 
 /* Whether it is wholly seen where the row's n-th is due. */
-static bool is_one_of(const rc_dash_row *row, const rc_dash *d, int *n) {
-  double t = rc_dash_along(row, d->u, d->v);
+static bool is_one_of(const finder *f, const rc_dash_row *row, const rc_dash *d, int *n) {
+  double t = rc_dash_along(row, d->u, d->v), x, y, due_x, due_y, w;
   if (!d->complete || !rc_dashes_alike(row, d->length, d->a, d->b) || !lies_on(row, d))
     return false;
   *n = rc_dash_number(row, t);
-  return fabs(t - rc_dash_place(row, *n)) <= OFF_PERIOD * row->period;
+  double due = rc_dash_place(row, *n), period = fabs(rc_dash_place(row, *n + 1) - due);
+  if (fabs(t - due) <= (f->drifts ? OFF_WHILE_DRIFTING : OFF_PERIOD) * period) return true;
+  return fabs(t - due) <= MOST_OFF_PERIOD * period &&
+         rc_ground_px(&f->ground, f->exponent, d->u, d->v, &x, &y, &w) &&
+         rc_ground_px(&f->ground, f->exponent, row->u + due * row->a, row->v + due * row->b, &due_x,
+                      &due_y, &w) &&
+         hypot(x - due_x, y - due_y) <= OFF_PLACE_PX;
 }
 
 static void gather(const finder *f, rc_dash_row *row) {
   row->seen_count = 0;
   for (int i = 0, n; i < f->dashes.count && row->seen_count < RC_MOST_IN_ROW; i++)
-    if (is_one_of(row, &f->dashes.found[i], &n)) row->seen[row->seen_count++] = n;
+    if (is_one_of(f, row, &f->dashes.found[i], &n)) row->seen[row->seen_count++] = n;
 }
 
 static bool is_seen(const finder *f, double x, double y) {
@@ -172,34 +182,79 @@ static bool find_ends(const finder *f, rc_dash_row *row) {
   return true;
 }
 
-/* The line and the period by least squares, a px of the picture being worth the same everywhere. */
-static void refine(const finder *f, rc_dash_row *row) {
-  double weight = 0, mu = 0, mv = 0, uu = 0, uv = 0, vv = 0, s = 0, sn = 0, snn = 0, st = 0,
-         snt = 0;
-  rc_dash_row old = *row;
-  for (int pass = 0; pass < 2; pass++)
+/* Unknowns by least squares from sums of products, the fourth column the right side: the first
+ * count. False: they are not told. */
+static bool solve(double m[3][4], int count) {
+  for (int k = 0; k < count; k++) {
+    int best = k;
+    for (int i = k + 1; i < count; i++)
+      if (fabs(m[i][k]) > fabs(m[best][k])) best = i;
+    for (int j = 0; j < 4; j++) {
+      double kept = m[k][j];
+      m[k][j] = m[best][j], m[best][j] = kept;
+    }
+    if (!(fabs(m[k][k]) > 1e-12)) return false;
+    for (int i = 0; i < count; i++) {
+      if (i == k) continue;
+      double times = m[i][k] / m[k][k];
+      for (int j = 0; j < 4; j++) m[i][j] -= times * m[k][j];
+    }
+  }
+  for (int k = 0; k < count; k++) m[k][3] /= m[k][k];
+  return true;
+}
+
+/* The line that its dashes lie on, a px of the picture being worth the same everywhere. */
+static void fit_line(const finder *f, rc_dash_row *row) {
+  double weight = 0, mu = 0, mv = 0, uu = 0, uv = 0, vv = 0;
+  for (int pass = 0, n; pass < 2; pass++)
     for (int i = 0; i < f->dashes.count; i++) {
       const rc_dash *d = &f->dashes.found[i];
-      int n;
-      if (!is_one_of(&old, d, &n)) continue;
+      if (!is_one_of(f, row, d, &n)) continue;
       double q = d->w * d->w, du = d->u - mu, dv = d->v - mv;
-      if (!pass) {
-        weight += q, mu += q * (d->u - mu) / weight, mv += q * (d->v - mv) / weight;
-        continue;
-      }
-      uu += q * du * du, uv += q * du * dv, vv += q * dv * dv;
-      double t = rc_dash_along(&old, d->u, d->v), p = q * d->w * d->w;
-      s += p, sn += p * n, snn += p * n * n, st += p * t, snt += p * n * t;
+      if (pass)
+        uu += q * du * du, uv += q * du * dv, vv += q * dv * dv;
+      else
+        weight += q, mu += q * du / weight, mv += q * dv / weight;
     }
   double middle = (uu + vv) / 2, apart = sqrt((uu - vv) * (uu - vv) / 4 + uv * uv);
   double a = uu > vv ? middle + apart - vv : uv, b = uu > vv ? uv : middle + apart - uu;
-  double norm = sqrt(a * a + b * b), spread = s * snn - sn * sn;
-  if (!(norm > 0) || !(spread > 0)) return;
-  if (a * old.a + b * old.b < 0) norm = -norm;
-  double shift = rc_dash_along(&old, mu, mv); /* the new point's place along the old line */
+  double norm = sqrt(a * a + b * b);
+  if (!(norm > 0)) return;
+  if (a * row->a + b * row->b < 0) norm = -norm;
+  row->first -= rc_dash_along(row, mu, mv); /* the new point's place along the old line */
   row->u = mu, row->v = mv, row->a = a / norm, row->b = b / norm;
-  row->period = (s * snt - sn * st) / spread;
-  row->first = (st - row->period * sn) / s - shift;
+}
+
+/* And where they are due along it: of the n-th of places t, t (1 + n drift) = first + n period. */
+static void fit_places(const finder *f, rc_dash_row *row) {
+  double m[3][4] = {{0}}, scale = row->period;
+  int unknown = f->drifts && row->seen_count >= LEAST_DRIFTING ? 3 : 2;
+  for (int i = 0, n; i < f->dashes.count; i++) {
+    const rc_dash *d = &f->dashes.found[i];
+    if (!is_one_of(f, row, d, &n)) continue;
+    double t = rc_dash_along(row, d->u, d->v) / scale, weight = d->w * d->w * d->w * d->w;
+    double terms[4] = {1, n, -n * t, t};
+    for (int k = 0; k < 3; k++)
+      for (int j = 0; j < 4; j++) m[k][j] += weight * terms[k] * terms[j];
+  }
+  if (!solve(m, unknown)) return;
+  row->first = m[0][3] * scale, row->period = m[1][3] * scale;
+  row->drift = unknown == 3 ? m[2][3] : 0;
+}
+
+/* Takes in what it comes to explain. */
+static void grow(const finder *f, rc_dash_row *row) {
+  int before;
+  gather(f, row);
+  do {
+    before = row->seen_count;
+    rc_dash_row old = *row;
+    fit_places(f, row);
+    fit_line(f, row);
+    gather(f, row);
+    if (row->seen_count < before) *row = old;
+  } while (row->seen_count > before);
 }
 
 static rc_dash_row row_between(const rc_dash *p, const rc_dash *q) {
@@ -232,10 +287,7 @@ static bool find_longest(const finder *f, const rc_dash_rows *rows, rc_dash_row 
           !rc_dashes_alike(&row, q->length, q->a, q->b) ||
           row.period < SHORTEST_PERIOD * row.length || row.period > LONGEST_PERIOD * row.length)
         continue;
-      gather(f, &row);
-      if (row.seen_count <= best->seen_count) continue;
-      refine(f, &row);
-      gather(f, &row);
+      grow(f, &row);
       if (row.seen_count > best->seen_count && find_ends(f, &row)) *best = row;
     }
   return best->seen_count >= LEAST_DASHES;
@@ -272,49 +324,12 @@ static void find_beside(const finder *f, rc_dash_rows *rows) {
     }
 }
 
-/* Three unknowns by least squares: sums of products, the fourth column the right side. False: they
- * do not tell. */
-static bool solve(double m[3][4]) {
-  for (int k = 0; k < 3; k++) {
-    int best = k;
-    for (int i = k + 1; i < 3; i++)
-      if (fabs(m[i][k]) > fabs(m[best][k])) best = i;
-    for (int j = 0; j < 4; j++) {
-      double kept = m[k][j];
-      m[k][j] = m[best][j], m[best][j] = kept;
-    }
-    if (!(fabs(m[k][k]) > 1e-12)) return false;
-    for (int i = 0; i < 3; i++) {
-      if (i == k) continue;
-      double times = m[i][k] / m[k][k];
-      for (int j = 0; j < 4; j++) m[i][j] -= times * m[k][j];
-    }
-  }
-  for (int k = 0; k < 3; k++) m[k][3] /= m[k][k];
-  return true;
-}
-
-/* Dashes that come again tell where their line vanishes better than the horizon that was given: of
- * the n-th of places t, t (1 + c n) = first + period n. Turns the ground until c = 0.
- * False: it stays. */
+/* Dashes that come again tell where their line vanishes better than the horizon that was given:
+ * turns the ground until they do not drift. False: it stays. */
 static bool correct(const finder *f, const rc_dash_row *row, rc_ground *ground) {
-  double m[3][4] = {{0}}, most_off = 0;
-  if (row->seen_count < LEAST_CORRECTING) return false;
-  for (int i = 0; i < f->dashes.count; i++) {
-    const rc_dash *d = &f->dashes.found[i];
-    int n;
-    if (!is_one_of(row, d, &n)) continue;
-    double t = rc_dash_along(row, d->u, d->v), scale = row->period,
-           weight = d->w * d->w * d->w * d->w;
-    double terms[4] = {1, n, -n * t / scale, t / scale};
-    most_off = fmax(most_off, fabs(t - rc_dash_place(row, n)));
-    for (int k = 0; k < 3; k++)
-      for (int j = 0; j < 4; j++) m[k][j] += weight * terms[k] * terms[j];
-  }
-  if (most_off < LEAST_OFF * row->period || !solve(m)) return false;
-  double c = m[2][3], from = row->u * row->a + row->v * row->b;
-  double by = -c / (m[1][3] * row->period + c * from);
-  if (!(fabs(by) * f->reach < MOST_CORRECTION)) return false;
+  double from = row->u * row->a + row->v * row->b;
+  double by = -row->drift / (row->period + row->drift * from);
+  if (row->drift == 0 || !(fabs(by) * f->reach < MOST_CORRECTION)) return false;
   *ground = rc_ground_turned(ground, by, row->a, row->b);
   return true;
 }
@@ -330,15 +345,46 @@ static recede_status find_on_ground(rc_context *context, const rc_image *image,
   return rc_poll(context);
 }
 
+static int seen_in(const rc_dash_rows *rows) {
+  int sum = 0;
+  for (int i = 0; i < rows->count; i++) sum += rows->rows[i].seen_count;
+  return sum;
+}
+
+/* The horizon may be higher or lower than was said: where it is, more dashes lie in rows. */
+static recede_status try_horizons(rc_context *context, const rc_image *image, const rc_mask *flags,
+                                  int exponent, const rc_ground *said, finder *f,
+                                  rc_dash_rows *rows) {
+  static const double farther[] = {0, -.05, .05, -.1, .1, -.15, .15};
+  int most = 0;
+  rc_ground best = *said;
+  rc_block *mark = rc_mark(context);
+  for (size_t i = 0; i < sizeof farther / sizeof *farther; i++) {
+    rows->ground = rc_ground_tilted(said, 1 + farther[i]);
+    RC_TRY(find_on_ground(context, image, flags, exponent, f, rows));
+    if (seen_in(rows) > most) most = seen_in(rows), best = rows->ground;
+    if (f->dashes.count < LEAST_DASHES) break;
+    rc_release(context, mark);
+  }
+  rc_release(context, mark);
+  rows->ground = best;
+  return RECEDE_OK;
+}
+
 recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, const rc_mask *flags,
                                 const rc_ground *ground, int exponent, rc_dash_rows *rows) {
   finder f = {.flags = flags, .exponent = exponent};
   f.reach = (double)(rc_longer_side(rc_box_of(flags, RC_TARGET)) << exponent) / 2;
-  rows->ground = *ground;
+  f.drifts = true;
   rc_block *mark = rc_mark(context);
-  RC_TRY(find_on_ground(context, image, flags, exponent, &f, rows));
-  for (int i = 0; i < CORRECTIONS && rows->count && correct(&f, rows->rows, &rows->ground); i++)
+  RC_TRY(try_horizons(context, image, flags, exponent, ground, &f, rows));
+  for (int i = 0; i <= CORRECTIONS; i++) {
+    f.drifts = i < CORRECTIONS;
+    rc_release(context, mark);
     RC_TRY(find_on_ground(context, image, flags, exponent, &f, rows));
+    if (!rows->count) break;
+    if (f.drifts && !correct(&f, rows->rows, &rows->ground)) i = CORRECTIONS - 1;
+  }
   find_beside(&f, rows);
   rc_release(context, mark);
   return rc_poll(context);

@@ -14,7 +14,8 @@
 /* Places and lengths as those of a dash. */
 typedef struct rc_dash_row {
   double u, v, a, b;    /* a point of its line, and the line's direction, a unit vector */
-  double first, period; /* its n-th dash's middle is first + n period from (u, v) along it */
+  double first, period; /* its n-th dash's middle is first + n period from (u, v) along it; */
+  double drift;         /* while the ground is not known, that over 1 + n drift */
   double length, width; /* of its dashes */
   double contrast;
   int low, high;            /* which dashes there are, seen or not */

@@ -4,11 +4,10 @@
 
 #define LEAST_W 1e-6
 
-/* A ray (x, y, f) meets the plane at P = (x, y, f) / w, times its distance. With p = X / w, for which
- * 1 / w = 1 - l . p, and o from the picture's middle to the origin of X, that is
- *   P = (p + o (1 - l . p), f (1 - l . p)),
- * linear in p: |dP|^2 = |dp|^2 - 2 (o . dp)(l . dp) + (o . o + f^2)(l . dp)^2. a, b and c are this
- * form's Cholesky factor. */
+/* A ray (x, y, f) meets the plane at P = (x, y, f) / w, times its distance. With p = X / w, for
+ * which 1 / w = 1 - l . p, and o from the picture's middle to the origin of X, that is P = (p + o
+ * (1 - l . p), f (1 - l . p)), linear in p: |dP|^2 = |dp|^2 - 2 (o . dp)(l . dp) + (o . o + f^2)(l
+ * . dp)^2. a, b and c are this form's Cholesky factor. */
 static void set_metric(rc_ground *g) {
   double square = g->from_x * g->from_x + g->from_y * g->from_y + g->focal_px * g->focal_px;
   double xx = 1 - 2 * g->from_x * g->lx + square * g->lx * g->lx;
@@ -34,6 +33,13 @@ rc_ground rc_ground_turned(const rc_ground *ground, double by, double along_u, d
   rc_ground g = *ground;
   g.lx += by * along_u * ground->a;
   g.ly += by * (along_u * ground->b + along_v * ground->c);
+  set_metric(&g);
+  return g;
+}
+
+rc_ground rc_ground_tilted(const rc_ground *ground, double times) {
+  rc_ground g = *ground;
+  g.lx *= times, g.ly *= times;
   set_metric(&g);
   return g;
 }

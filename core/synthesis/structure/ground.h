@@ -8,8 +8,8 @@
 #include "synthesis/copy.h"
 
 typedef struct rc_ground {
-  double lx, ly, x0, y0;            /* the chart's */
-  double from_x, from_y;            /* where that lies from the picture's middle, px */
+  double lx, ly, x0, y0; /* the chart's */
+  double from_x, from_y; /* where that lies from the picture's middle, px */
   double focal_px;
   double a, b, c; /* of p = X / w: u = a px + b py, v = c py */
 } rc_ground;
@@ -18,6 +18,8 @@ typedef struct rc_ground {
 rc_ground rc_ground_of(const rc_chart *chart, double from_x, double from_y, double focal_px);
 /* The plane turned: w grows by this part for each px along the unit vector (along_u, along_v). */
 rc_ground rc_ground_turned(const rc_ground *ground, double by, double along_u, double along_v);
+/* The same plane with its horizon nearer, by this factor. */
+rc_ground rc_ground_tilted(const rc_ground *ground, double times);
 /* Where a px of a level 2^exponent times coarser lies, and its w. False: beyond the horizon. */
 bool rc_ground_place(const rc_ground *ground, int exponent, double x, double y, double *u,
                      double *v, double *w);
