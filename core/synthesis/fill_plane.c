@@ -337,7 +337,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   rc_rails found = e.rails;
   RC_TRY(rc_descend(context, &e, &finest));
-  rc_dash_rows_lay(&dashes, &finest);
+  RC_TRY(rc_dash_rows_lay(context, &dashes, &finest));
   if (!rc_runs(&known->rails) && !rc_has_sides(&e.sides))
     *known = (rc_known_rails){e.on_rails ? e.rails : found, e.chart, e.on_rails};
   context->report.surface = e.chart.raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;

@@ -202,7 +202,8 @@ static uint8_t add_edge(const composition *c, int x, int y, int e, const float *
   size_t at = rc_level_at(level, nx, ny);
   rc_copy other = level->field[at];
   const float *neighbour = c->value + at * (size_t)c->channels;
-  if (isnan(other.a) || rc_same_copy(own, other)) return count_of(c, value, neighbour);
+  bool one_thing = level->laid && level->laid[rc_level_at(level, x, y)] && level->laid[at];
+  if (isnan(other.a) || rc_same_copy(own, other) || one_thing) return count_of(c, value, neighbour);
   bool own_goes_on = copy_value(c, own, nx, ny, there);
   bool other_goes_on = copy_value(c, other, x, y, back);
   float share = own_goes_on && other_goes_on ? .5f : 1.f;

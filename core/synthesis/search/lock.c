@@ -47,18 +47,23 @@ recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int c
   return RECEDE_OK;
 }
 
-void rc_dash_rows_lay(const rc_dash_rows *rows, rc_level *finest) {
+recede_status rc_dash_rows_lay(rc_context *context, const rc_dash_rows *rows, rc_level *finest) {
   rc_copy copy;
   int sx, sy;
-  for (int y = finest->box.y0; y < finest->box.y1 && rows->count; y++)
+  if (!rows->count) return RECEDE_OK;
+  RC_TRY(RC_NEW_ZERO(context, (size_t)finest->box_w * (size_t)finest->box_h, &finest->laid));
+  for (int y = finest->box.y0; y < finest->box.y1; y++)
     for (int x = finest->box.x0; x < finest->box.x1; x++) {
       float at_x = rc_level_x(finest, x), at_y = rc_level_y(finest, y);
       if (!rc_level_is_target(finest, x, y) ||
           !rc_dash_rows_copy(rows, &finest->chart, at_x, at_y, &copy))
         continue;
       rc_place place = rc_copy_place(&finest->chart, copy, at_x, at_y);
-      if (rc_place_px(finest, &place, &sx, &sy) &&
-          (finest->flags[(size_t)sy * (size_t)finest->width + (size_t)sx] & RC_KNOWN))
-        finest->field[rc_level_at(finest, x, y)] = copy;
+      if (!rc_place_px(finest, &place, &sx, &sy) ||
+          !(finest->flags[(size_t)sy * (size_t)finest->width + (size_t)sx] & RC_KNOWN))
+        continue;
+      finest->field[rc_level_at(finest, x, y)] = copy;
+      finest->laid[rc_level_at(finest, x, y)] = 1;
     }
+  return rc_poll(context);
 }

@@ -10,8 +10,8 @@
  * search leave it alone. */
 recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int count, int exponent,
                             rc_level *level);
-/* Sets the finest level's field where rows cross the hole, when all else is done: what is copied
- * around them has no dashes. */
-void rc_dash_rows_lay(const rc_dash_rows *rows, rc_level *finest);
+/* Sets the finest level's field, and laid, where rows cross the hole, when all else is done: what
+ * is copied around them has no dashes. */
+recede_status rc_dash_rows_lay(rc_context *context, const rc_dash_rows *rows, rc_level *finest);
 
 #endif

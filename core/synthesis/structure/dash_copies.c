@@ -1,6 +1,5 @@
 #include <math.h>
 
-#include "base/real.h"
 #include "synthesis/structure/dash_row.h"
 #include "synthesis/structure/dash_rows.h"
 
@@ -10,13 +9,6 @@
 #define TIMES_LENGTH 1.3
 #define MARGIN_PX 4.
 #define LEAST_MARGIN_PX 1.
-/* Copies may be so much too coarse, and nearer ones so much too fine; an octave of the former is so
- * much worse. */
-#define MOST_COARSE 2.5
-#define MOST_FINE 6.
-#define PRICE_COARSE 3.f
-/* Its own row's are preferred by so many octaves. */
-#define PRICE_OF_OTHER_ROW .1f
 
 /* Which of a row's dashes a place, x, y in px of the finest level, is part of or lies beside.
  * False: none. */
@@ -48,45 +40,24 @@ void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *fl
           *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
 }
 
-/* Where the middle of the best dash that is seen lies, for a row's n-th. */
-static bool best_dash(const rc_dash_rows *rows, const rc_dash_row *row, int n, double *u,
-                      double *v) {
-  float least = INFINITY;
-  double x, y, w, there, t = rc_dash_place(row, n);
-  if (!rc_ground_px(&rows->ground, 0, row->u + t * row->a, row->v + t * row->b, &x, &y, &w))
-    return false;
-  for (int i = 0; i < rows->count; i++) {
-    const rc_dash_row *from = &rows->rows[i];
-    if (!rc_dashes_alike(row, from->length, from->a, from->b)) continue;
-    for (int k = 0; k < from->seen_count; k++) {
-      t = rc_dash_place(from, from->seen[k]);
-      double from_u = from->u + t * from->a, from_v = from->v + t * from->b;
-      if (!rc_ground_px(&rows->ground, 0, from_u, from_v, &x, &y, &there)) continue;
-      if (there * MOST_COARSE < w || there > MOST_FINE * w) continue;
-      float finer = rc_log2((float)(there / w));
-      float price = (finer < 0 ? -PRICE_COARSE : 1.f) * finer;
-      if (from != row) price += PRICE_OF_OTHER_ROW;
-      if (price >= least) continue;
-      least = price, *u = from_u, *v = from_v;
-    }
-  }
-  return least < INFINITY;
+static const rc_dash_laid *find_laid(const rc_dash_row *row, int n) {
+  for (int i = 0; i < row->laid_count; i++)
+    if (row->laid[i].number == n) return &row->laid[i];
+  return NULL;
 }
 
 bool rc_dash_rows_copy(const rc_dash_rows *rows, const rc_chart *chart, float x, float y,
                        rc_copy *copy) {
   const rc_ground *ground = &rows->ground;
-  double at_x = (double)x + ground->x0, at_y = (double)y + ground->y0, u, v, from_u = 0, from_v = 0;
-  double from_x, from_y, w;
+  double at_x = (double)x + ground->x0, at_y = (double)y + ground->y0, from_x, from_y, u, v, w;
   int n;
   for (int i = 0; i < rows->count; i++) {
     const rc_dash_row *row = &rows->rows[i];
-    if (!lies_in(ground, row, at_x, at_y, MARGIN_PX, &n) ||
-        !best_dash(rows, row, n, &from_u, &from_v) ||
-        !rc_ground_place(ground, 0, at_x, at_y, &u, &v, &w))
-      continue;
+    if (!lies_in(ground, row, at_x, at_y, MARGIN_PX, &n)) continue;
+    const rc_dash_laid *laid = find_laid(row, n);
+    if (!laid || !rc_ground_place(ground, 0, at_x, at_y, &u, &v, &w)) continue;
     double t = rc_dash_place(row, n);
-    u += from_u - row->u - t * row->a, v += from_v - row->v - t * row->b;
+    u += laid->u - row->u - t * row->a, v += laid->v - row->v - t * row->b;
     if (!rc_ground_px(ground, 0, u, v, &from_x, &from_y, &w)) return false;
     *copy = rc_copy_exact(chart, x, y, (float)(from_x - ground->x0), (float)(from_y - ground->y0));
     return true;

@@ -36,4 +36,9 @@ static inline bool rc_dashes_alike(const rc_dash_row *row, double length, double
          fabs(a * row->a + b * row->b) > RC_DASHES_PARALLEL;
 }
 
+/* Chooses what is laid into the hole, of rows that are found: dashes of a size that will do and, of
+ * one that is seen in part, such that fit that. */
+void rc_dash_rows_choose(const rc_dashes *dashes, const rc_mask *flags, int exponent,
+                         rc_dash_rows *rows);
+
 #endif

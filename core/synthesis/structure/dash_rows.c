@@ -79,8 +79,12 @@ static bool is_one_of(const finder *f, const rc_dash_row *row, const rc_dash *d,
 
 static void gather(const finder *f, rc_dash_row *row) {
   row->seen_count = 0;
-  for (int i = 0, n; i < f->dashes.count && row->seen_count < RC_MOST_IN_ROW; i++)
-    if (is_one_of(f, row, &f->dashes.found[i], &n)) row->seen[row->seen_count++] = n;
+  for (int i = 0, n; i < f->dashes.count && row->seen_count < RC_MOST_IN_ROW; i++) {
+    if (!is_one_of(f, row, &f->dashes.found[i], &n)) continue;
+    bool again = false;
+    for (int k = 0; k < row->seen_count; k++) again |= row->seen[k] == n;
+    if (!again) row->seen[row->seen_count++] = n;
+  }
 }
 
 static bool is_seen(const finder *f, double x, double y) {
@@ -386,6 +390,7 @@ recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, cons
     if (f.drifts && !correct(&f, rows->rows, &rows->ground)) i = CORRECTIONS - 1;
   }
   find_beside(&f, rows);
+  rc_dash_rows_choose(&f.dashes, flags, exponent, rows);
   rc_release(context, mark);
   return rc_poll(context);
 }

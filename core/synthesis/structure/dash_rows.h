@@ -11,6 +11,12 @@
 #define RC_MOST_DASH_ROWS 8
 #define RC_MOST_IN_ROW 24
 
+/* A dash in the hole: which, and where the middle of the one that is copied lies. */
+typedef struct rc_dash_laid {
+  int number;
+  double u, v;
+} rc_dash_laid;
+
 /* Places and lengths as those of a dash. */
 typedef struct rc_dash_row {
   double u, v, a, b;    /* a point of its line, and the line's direction, a unit vector */
@@ -21,6 +27,8 @@ typedef struct rc_dash_row {
   int low, high;            /* which dashes there are, seen or not */
   int seen[RC_MOST_IN_ROW]; /* those wholly seen */
   int seen_count;
+  rc_dash_laid laid[RC_MOST_IN_ROW];
+  int laid_count;
 } rc_dash_row;
 
 typedef struct rc_dash_rows {
@@ -34,8 +42,8 @@ recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, cons
                                 const rc_ground *ground, int exponent, rc_dash_rows *rows);
 /* Takes RC_SOURCE from a level's pixels that lie in rows. */
 void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *flags);
-/* The copy of a pixel of the finest level, relative to the chart's origin. False: it lies in no
- * row, or in one of which nothing is seen in a size that will do. */
+/* The copy of a pixel of the finest level, relative to the chart's origin. False: no dash is laid
+ * there. */
 bool rc_dash_rows_copy(const rc_dash_rows *rows, const rc_chart *chart, float x, float y,
                        rc_copy *copy);
 /* Takes out lines that run along a row: it says what they show in the hole. */
