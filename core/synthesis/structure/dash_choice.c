@@ -15,7 +15,7 @@
  * mean of squares to this part of the contrast. Places along and across that are looked at, over so
  * much of its length and width. */
 #define MOST_MOVED_PX 3
-#define MOST_MISFIT .35
+#define MOST_MISFIT .5
 #define PLACES_ALONG 32
 #define PLACES_ACROSS 12
 #define LEAST_PLACES 12

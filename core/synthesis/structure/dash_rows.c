@@ -226,7 +226,8 @@ static void fit_line(const finder *f, rc_dash_row *row) {
   double norm = sqrt(a * a + b * b);
   if (!(norm > 0)) return;
   if (a * row->a + b * row->b < 0) norm = -norm;
-  row->first -= rc_dash_along(row, mu, mv); /* the new point's place along the old line */
+  double shift = rc_dash_along(row, mu, mv); /* the new point's place along the old line */
+  row->first -= shift, row->period -= shift * row->drift;
   row->u = mu, row->v = mv, row->a = a / norm, row->b = b / norm;
 }
 
