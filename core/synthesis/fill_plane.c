@@ -310,6 +310,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   e.gain = byte_gain(filled, &problem->flags);
   /* Again, for it is the texture's that counts; what is alike may be too little to tell. */
   RC_TRY(choose_surface(context, problem, &e, &raised));
+  if (rc_dash_rows_lie(&dashes) && params->surface == RECEDE_SURFACE_AUTO) raised = false;
   e.chart = chart_of(problem, raised);
   if (rc_runs(&known->rails)) {
     e.rails = rc_rails_in_chart(known, &e.chart);

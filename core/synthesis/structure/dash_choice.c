@@ -11,18 +11,20 @@
 #define PRICE_COARSE 3.f
 /* Its own row's, which lean as it does, are preferred by so many octaves. */
 #define PRICE_OF_OTHER_ROW 1.f
-/* Where one is seen in part the copy must fit that, moved by up to so many px of the level: in the
- * mean of squares to this part of the contrast. Places along and across that are looked at, over so
- * much of its length and width. */
+#define RC_MOST_CANDIDATES (RC_MOST_DASH_ROWS * RC_MOST_IN_ROW)
+/* Where one is seen in part the copy must fit that, moved by up to so many px of the level, in the
+ * mean of squares to this part of the contrast: over so much of its length and width, if so many px
+ * of that are seen. Each is the mean of some samples along and across. */
 #define MOST_MOVED_PX 3
-#define MOST_MISFIT .5
-#define PLACES_ALONG 32
-#define PLACES_ACROSS 12
-#define LEAST_PLACES 12
+#define MOST_MISFIT .33
 #define PART_ALONG 1.2
 #define PART_ACROSS 2.
+#define LEAST_SEEN 12
+#define SAMPLES 3
 /* A px farther must be so much better. */
 #define PRICE_OF_MOVING .01
+/* So many are tried, the cheapest first. */
+#define MOST_TRIES 6
 
 typedef struct chooser {
   const rc_dashes *dashes;
@@ -31,83 +33,145 @@ typedef struct chooser {
   int exponent;
 } chooser;
 
-static bool off_at(const chooser *c, double x, double y, uint8_t wanted, double *off) {
+static bool off_at(const chooser *c, double x, double y, double *off) {
   int px = (int)floor(x + .5), py = (int)floor(y + .5);
   if (!rc_inside(c->flags->width, c->flags->height, px, py) ||
-      !(*rc_flag(c->flags, px, py) & wanted))
+      !(*rc_flag(c->flags, px, py) & (RC_SOURCE | RC_ALLOWED)))
     return false;
   *off = (double)c->dashes->off[(size_t)py * (size_t)c->flags->width + (size_t)px];
   return true;
 }
 
-/* Where the middle of the best dash that is seen lies, for a row's n-th. */
-static bool best_dash(const rc_dash_rows *rows, const rc_dash_row *row, int n, double *u,
-                      double *v) {
-  float least = INFINITY;
-  double x, y, w, there, t = rc_dash_place(row, n);
-  if (!rc_ground_px(&rows->ground, 0, row->u + t * row->a, row->v + t * row->b, &x, &y, &w))
-    return false;
-  for (int i = 0; i < rows->count; i++) {
-    const rc_dash_row *from = &rows->rows[i];
-    if (!rc_dashes_alike(row, from->length, from->a, from->b)) continue;
-    for (int k = 0; k < from->seen_count; k++) {
-      t = rc_dash_place(from, from->seen[k]);
-      double from_u = from->u + t * from->a, from_v = from->v + t * from->b;
-      if (!rc_ground_px(&rows->ground, 0, from_u, from_v, &x, &y, &there)) continue;
-      if (there * MOST_COARSE < w || there > MOST_FINE * w) continue;
-      float finer = rc_log2((float)(there / w));
-      float price = (finer < 0 ? -PRICE_COARSE : 1.f) * finer;
-      if (from != row) price += PRICE_OF_OTHER_ROW;
-      if (price >= least) continue;
-      least = price, *u = from_u, *v = from_v;
-    }
+/* The mean over a pixel of what lies (du, dv) away and so many px of the level farther. */
+static bool off_away(const chooser *c, int x, int y, double du, double dv, int right, int down,
+                     double *off) {
+  double sum = 0;
+  for (int k = 0; k < SAMPLES * SAMPLES; k++) {
+    double u, v, w, from_x, from_y, here;
+    double px = x + (k % SAMPLES + .5) / SAMPLES - .5, py = y + (k / SAMPLES + .5) / SAMPLES - .5;
+    if (!rc_ground_place(c->ground, c->exponent, px, py, &u, &v, &w) ||
+        !rc_ground_px(c->ground, c->exponent, u + du, v + dv, &from_x, &from_y, &w) ||
+        !off_at(c, from_x + right, from_y + down, &here))
+      return false;
+    sum += here;
   }
-  return least < INFINITY;
+  *off = sum / (SAMPLES * SAMPLES);
+  return true;
 }
 
-typedef struct fit {
-  double squares, seen, hidden; /* places */
-} fit;
+/* Around a row's n-th, px of the level. */
+static rc_box box_of(const chooser *c, const rc_dash_row *row, int n) {
+  double low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
+  for (int k = 0; k < 4; k++) {
+    double t = rc_dash_place(row, n) + (k & 1 ? .5 : -.5) * PART_ALONG * row->length, x, y, w;
+    double side = (k & 2 ? .5 : -.5) * PART_ACROSS * row->width;
+    if (!rc_ground_px(c->ground, c->exponent, row->u + t * row->a - side * row->b,
+                      row->v + t * row->b + side * row->a, &x, &y, &w))
+      return (rc_box){0, 0, 0, 0};
+    low_x = fmin(low_x, x), high_x = fmax(high_x, x);
+    low_y = fmin(low_y, y), high_y = fmax(high_y, y);
+  }
+  return (rc_box){(int)fmax(low_x, 0), (int)fmax(low_y, 0), (int)fmin(high_x + 2, c->flags->width),
+                  (int)fmin(high_y + 2, c->flags->height)};
+}
 
-/* Of the n-th with one that lies (du, dv) away and is moved by so many px of the level. */
-static fit fit_of(const chooser *c, const rc_dash_row *row, int n, double du, double dv, int right,
-                  int down) {
-  fit f = {0, 0, 0};
-  for (int i = 0; i < PLACES_ALONG; i++)
-    for (int k = 0; k < PLACES_ACROSS; k++) {
-      double t = rc_dash_place(row, n) + PART_ALONG * row->length * ((i + .5) / PLACES_ALONG - .5);
-      double side = PART_ACROSS * row->width * ((k + .5) / PLACES_ACROSS - .5);
-      double u = row->u + t * row->a - side * row->b, v = row->v + t * row->b + side * row->a;
-      double x, y, from_x, from_y, w, here, there, none;
-      if (!rc_ground_px(c->ground, c->exponent, u, v, &x, &y, &w) ||
-          !rc_ground_px(c->ground, c->exponent, u + du, v + dv, &from_x, &from_y, &w))
+static bool is_within(const chooser *c, const rc_dash_row *row, int n, int x, int y) {
+  double u, v, w;
+  return rc_ground_place(c->ground, c->exponent, x, y, &u, &v, &w) &&
+         fabs(rc_dash_along(row, u, v) - rc_dash_place(row, n)) < .5 * PART_ALONG * row->length &&
+         rc_dash_across(row, u, v) < .5 * PART_ACROSS * row->width;
+}
+
+static bool is_hidden(const chooser *c, const rc_dash_row *row, int n) {
+  rc_box box = box_of(c, row, n);
+  for (int y = box.y0; y < box.y1; y++)
+    for (int x = box.x0; x < box.x1; x++)
+      if (*rc_flag(c->flags, x, y) & RC_TARGET && is_within(c, row, n, x, y)) return true;
+  return false;
+}
+
+/* How badly what lies (du, dv) away, moved by so many px of the level, fits the part of the n-th
+ * that is seen; 0 where too little is. */
+static double misfit_of(const chooser *c, const rc_dash_row *row, int n, double du, double dv,
+                        int right, int down) {
+  double squares = 0, here, there;
+  int seen = 0;
+  rc_box box = box_of(c, row, n);
+  for (int y = box.y0; y < box.y1; y++)
+    for (int x = box.x0; x < box.x1; x++) {
+      if (!is_within(c, row, n, x, y) || !off_at(c, x, y, &here) ||
+          !off_away(c, x, y, du, dv, right, down, &there))
         continue;
-      f.hidden += off_at(c, x, y, RC_TARGET, &none);
-      if (!off_at(c, x, y, RC_SOURCE | RC_ALLOWED, &here) ||
-          !off_at(c, from_x + right, from_y + down, RC_SOURCE | RC_ALLOWED, &there))
-        continue;
-      f.squares += (here - there) * (here - there), f.seen++;
+      squares += (here - there) * (here - there), seen++;
     }
-  return f;
+  return seen < LEAST_SEEN ? 0 : squares / seen / (row->contrast * row->contrast);
 }
 
-/* Moves the copy to where it fits best. False: it does not. */
-static bool move(const chooser *c, const rc_dash_row *row, int n, double u, double v,
+/* A dash that is seen, as the source of another. */
+typedef struct candidate {
+  double u, v;
+  float price;
+} candidate;
+
+/* Moves it to where it fits best. False: it does not. */
+static bool move(const chooser *c, const rc_dash_row *row, int n, const candidate *from,
                  rc_dash_laid *laid) {
-  double t = rc_dash_place(row, n), du = u - row->u - t * row->a, dv = v - row->v - t * row->b;
-  double x, y, w, least = INFINITY, misfit = 0;
+  double t = rc_dash_place(row, n), x, y, w, least = INFINITY, misfit = 0;
+  double du = from->u - row->u - t * row->a, dv = from->v - row->v - t * row->b;
+  if (!rc_ground_px(c->ground, c->exponent, from->u, from->v, &x, &y, &w)) return false;
   for (int down = -MOST_MOVED_PX; down <= MOST_MOVED_PX; down++)
     for (int right = -MOST_MOVED_PX; right <= MOST_MOVED_PX; right++) {
-      fit f = fit_of(c, row, n, du, dv, right, down);
-      bool told = f.seen >= LEAST_PLACES;
+      double off = misfit_of(c, row, n, du, dv, right, down);
       double far = PRICE_OF_MOVING * hypot(right, down);
-      double off = told ? f.squares / f.seen / (row->contrast * row->contrast) : 0;
-      if (off + far >= least || !rc_ground_px(c->ground, c->exponent, u, v, &x, &y, &w) ||
+      if (off + far >= least ||
           !rc_ground_place(c->ground, c->exponent, x + right, y + down, &laid->u, &laid->v, &w))
         continue;
       least = off + far, misfit = off;
     }
   return least < INFINITY && misfit < MOST_MISFIT * MOST_MISFIT;
+}
+
+/* Those of a size that will do for a row's n-th, in the rows' order. */
+static int collect(const rc_dash_rows *rows, const rc_dash_row *row, int n,
+                   candidate candidates[RC_MOST_CANDIDATES]) {
+  double x, y, w, there, t = rc_dash_place(row, n);
+  int count = 0;
+  if (!rc_ground_px(&rows->ground, 0, row->u + t * row->a, row->v + t * row->b, &x, &y, &w))
+    return 0;
+  for (int i = 0; i < rows->count; i++) {
+    const rc_dash_row *from = &rows->rows[i];
+    if (!rc_dashes_alike(row, from->length, from->a, from->b)) continue;
+    for (int k = 0; k < from->seen_count; k++) {
+      t = rc_dash_place(from, from->seen[k]);
+      candidate c = {.u = from->u + t * from->a, .v = from->v + t * from->b};
+      if (!rc_ground_px(&rows->ground, 0, c.u, c.v, &x, &y, &there) || there * MOST_COARSE < w ||
+          there > MOST_FINE * w)
+        continue;
+      float finer = rc_log2((float)(there / w));
+      c.price = (finer < 0 ? -PRICE_COARSE : 1.f) * finer;
+      if (from != row) c.price += PRICE_OF_OTHER_ROW;
+      candidates[count++] = c;
+    }
+  }
+  return count;
+}
+
+/* The cheapest of some that fit. False: none does. */
+static bool choose(const chooser *c, const rc_dash_rows *rows, const rc_dash_row *row, int n,
+                   rc_dash_laid *laid) {
+  candidate candidates[RC_MOST_CANDIDATES];
+  int count = collect(rows, row, n, candidates);
+  for (int tries = 0; tries < MOST_TRIES; tries++) {
+    int best = -1;
+    for (int i = 0; i < count; i++)
+      if (candidates[i].price < INFINITY &&
+          (best < 0 || candidates[i].price < candidates[best].price))
+        best = i;
+    if (best < 0) return false;
+    if (move(c, row, n, &candidates[best], laid)) return true;
+    candidates[best].price = INFINITY;
+  }
+  return false;
 }
 
 void rc_dash_rows_choose(const rc_dashes *dashes, const rc_mask *flags, int exponent,
@@ -118,9 +182,7 @@ void rc_dash_rows_choose(const rc_dashes *dashes, const rc_mask *flags, int expo
     row->laid_count = 0;
     for (int n = row->low; n <= row->high && row->laid_count < RC_MOST_IN_ROW; n++) {
       rc_dash_laid laid = {.number = n};
-      double u = 0, v = 0;
-      if (fit_of(&c, row, n, 0, 0, 0, 0).hidden > 0 && best_dash(rows, row, n, &u, &v) &&
-          move(&c, row, n, u, v, &laid))
+      if (is_hidden(&c, row, n) && choose(&c, rows, row, n, &laid))
         row->laid[row->laid_count++] = laid;
     }
   }

@@ -40,6 +40,12 @@ void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *fl
           *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
 }
 
+bool rc_dash_rows_lie(const rc_dash_rows *rows) {
+  for (int i = 0; i < rows->count; i++)
+    if (rows->rows[i].laid_count) return true;
+  return false;
+}
+
 static const rc_dash_laid *find_laid(const rc_dash_row *row, int n) {
   for (int i = 0; i < row->laid_count; i++)
     if (row->laid[i].number == n) return &row->laid[i];
