@@ -1,5 +1,6 @@
-/* A road's dashes come again in the hole where they are due, and nowhere else. */
+/* A road's dashes come again in the hole where they are due, and nowhere else. And its lines. */
 #include <math.h>
+#include <string.h>
 
 #include "plane_scene.h"
 
@@ -30,13 +31,14 @@ static picture draw_road(double tilt_deg) {
 
 typedef struct paint {
   double right, all; /* pixels that are, or of those that are or should be */
+  double wrong;      /* of plain ones */
 } paint;
 
 /* In a round hole. */
 static paint painted_right(double tilt_deg, double said_deg, area box, const char *settings) {
   picture truth = draw_road(tilt_deg);
   task t = task_new(picture_copy(&truth), settings);
-  paint p = {0, 0};
+  paint p = {0, 0, 0};
   t.params.slant_deg = said_deg, t.params.tilt_deg = tilt_deg;
   for (int y = box.y0; y < box.y1; y++)
     for (int x = box.x0; x < box.x1; x++)
@@ -50,7 +52,7 @@ static paint painted_right(double tilt_deg, double said_deg, area box, const cha
       float wanted = picture_get(&truth, x, y, 0), got = picture_get(&t.result, x, y, 0);
       if (!(picture_get(&t.mask, x, y, 0) > 0) || (wanted > .5f && wanted < .8f)) continue;
       bool is_paint = wanted > .8f, good = fabsf(got - wanted) < .2f;
-      p.right += is_paint && good, p.all += is_paint || !good;
+      p.right += is_paint && good, p.all += is_paint || !good, p.wrong += !is_paint && !good;
     }
   task_clear(&t);
   picture_clear(&truth);
@@ -63,7 +65,7 @@ static const area holes[] = {
     {250, 130, 390, 260}, {130, 150, 300, 280}, {200, 140, 440, 250}, {250, 200, 400, 350}};
 
 static double part_right(double tilt_deg, double said_deg, const char *settings) {
-  paint sum = {0, 0};
+  paint sum = {0, 0, 0};
   for (int i = 0; i < (int)G_N_ELEMENTS(holes); i++) {
     paint p = painted_right(tilt_deg, said_deg, holes[i], settings);
     sum.right += p.right, sum.all += p.all;
@@ -87,9 +89,48 @@ static void correct_the_horizon(void) {
   g_assert_cmpfloat(part_right(0, SLANT_DEG + 1.5, "surface=flat quality=draft"), >, .5);
 }
 
+/* Where a row is seen to have ended it does not go on in the hole. */
+static void end_where_they_end(void) {
+  static const area hole = {250, 170, 390, 260};
+  for (end = -11; end <= 7; end += PERIOD) /* behind a dash */
+    g_assert_cmpfloat(painted_right(0, SLANT_DEG, hole, "quality=draft").wrong, <, 20);
+}
+
+/* A line that cuts a corner off a hole leaves it at flat angles. */
+static void lines_cut_corners(void) {
+  static const area hole = {420, 180, 560, 300};
+  end = INFINITY;
+  paint p = painted_right(0, SLANT_DEG, hole, "surface=flat");
+  g_assert_cmpfloat(p.all, >, 60);
+  g_assert_cmpfloat(p.right, >, .7 * p.all);
+}
+
+/* A wall's joints come again, too, but they are not all that stands out. */
+static void walls_have_none(void) {
+  static const double slants_deg[] = {30, 60}, tilts_deg[] = {0, 45};
+  for (int i = 0; i < 4; i++) {
+    double slant_deg = slants_deg[i / 2], tilt_deg = tilts_deg[i % 2];
+    picture truth = picture_of_plane(400, 300, 1, RECEDE_U8, bricks, 20, slant_deg, tilt_deg);
+    task with = task_new(picture_copy(&truth), "quality=draft");
+    task without = task_new(truth, "quality=draft engine-dashes=0");
+    for (task *t = &with; t; t = t == &with ? &without : NULL) {
+      t->params.slant_deg = slant_deg, t->params.tilt_deg = tilt_deg;
+      task_hole(t, (area){150, 100, 260, 190});
+      task_succeeds(t);
+    }
+    g_assert_true(memcmp(with.result.pixels, without.result.pixels, picture_bytes(&with.result)) ==
+                  0);
+    task_clear(&with);
+    task_clear(&without);
+  }
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/dashes/come-again", come_again);
   g_test_add_func("/dashes/horizon", correct_the_horizon);
+  g_test_add_func("/dashes/end", end_where_they_end);
+  g_test_add_func("/dashes/corner", lines_cut_corners);
+  g_test_add_func("/dashes/walls", walls_have_none);
   return g_test_run();
 }

@@ -174,9 +174,37 @@ static bool choose(const chooser *c, const rc_dash_rows *rows, const rc_dash_row
   return false;
 }
 
+/* The farthest place along a row where any of the others is seen to end, to that side; INFINITY:
+ * one does not, or there is none. */
+static double end_of_others(const rc_dash_rows *rows, const rc_dash_row *row, double side) {
+  double farthest = -INFINITY;
+  for (int i = 0; i < rows->count; i++) {
+    const rc_dash_row *s = &rows->rows[i];
+    double same = s->a * row->a + s->b * row->b;
+    if (s == row || !rc_dashes_alike(row, s->length, s->a, s->b)) continue;
+    bool high = same * side > 0;
+    double t = rc_dash_place(s, high ? s->high : s->low);
+    if (!s->ends[high]) return INFINITY;
+    farthest = fmax(farthest, side * rc_dash_along(row, s->u + t * s->a, s->v + t * s->b));
+  }
+  return farthest > -INFINITY ? farthest : INFINITY;
+}
+
+/* Lanes end together: where all others are seen to, those do of which the hole or the distance
+ * hides it. */
+static void end_together(rc_dash_rows *rows) {
+  for (int i = 0; i < rows->count; i++) {
+    rc_dash_row *row = &rows->rows[i];
+    double low = -end_of_others(rows, row, -1), high = end_of_others(rows, row, 1);
+    if (!row->ends[0] && isfinite(low)) row->low = rc_dash_number(row, low);
+    if (!row->ends[1] && isfinite(high)) row->high = rc_dash_number(row, high);
+  }
+}
+
 void rc_dash_rows_choose(const rc_dashes *dashes, const rc_mask *flags, int exponent,
                          rc_dash_rows *rows) {
   chooser c = {dashes, flags, &rows->ground, exponent};
+  end_together(rows);
   for (int i = 0; i < rows->count; i++) {
     rc_dash_row *row = &rows->rows[i];
     row->laid_count = 0;

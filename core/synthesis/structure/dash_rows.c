@@ -37,7 +37,7 @@
 #define SAMPLES 32
 #define DASHES_PER_MISSING 4
 /* Shorter ones of the level could be missed. */
-#define LEAST_SEEN_PX 8.
+#define LEAST_SEEN_PX 4.
 /* So many of a row tell where their line vanishes; corrected is to so much of w at the hole's ends,
  * in so many rounds. */
 #define LEAST_DRIFTING 4
@@ -171,18 +171,13 @@ static bool find_ends(const finder *f, rc_dash_row *row) {
   for (int n = first + 1; n < last; n++) missing += is_missing(f, row, n);
   if (DASHES_PER_MISSING * missing > row->seen_count) return false;
   if (!is_plain(f, row, first, last)) return false;
-  /* Where it is seen to have ended, between here and there none is sure. */
   row->low = first - FARTHEST, row->high = last + FARTHEST;
-  for (int n = first - 1; n >= first - FARTHEST; n--)
-    if (is_missing(f, row, n)) {
-      row->low = first;
-      break;
-    }
-  for (int n = last + 1; n <= last + FARTHEST; n++)
-    if (is_missing(f, row, n)) {
-      row->high = last;
-      break;
-    }
+  row->ends[0] = row->ends[1] = false;
+  /* Where it is seen to have ended, between here and there none is sure. */
+  for (int n = 1; n <= FARTHEST; n++) {
+    if (!row->ends[0] && is_missing(f, row, first - n)) row->ends[0] = true, row->low = first;
+    if (!row->ends[1] && is_missing(f, row, last + n)) row->ends[1] = true, row->high = last;
+  }
   return true;
 }
 

@@ -25,6 +25,7 @@ typedef struct rc_dash_row {
   double length, width; /* of its dashes */
   double contrast;
   int low, high;            /* which dashes there are, seen or not */
+  bool ends[2];             /* there it is seen to have ended, at low and at high */
   int seen[RC_MOST_IN_ROW]; /* those wholly seen */
   int seen_count;
   rc_dash_laid laid[RC_MOST_IN_ROW];
