@@ -334,15 +334,11 @@ static bool correct(const finder *f, const rc_dash_row *row, rc_ground *ground) 
   return true;
 }
 
-static recede_status find_on_ground(rc_context *context, const rc_image *image,
-                                    const rc_mask *flags, int exponent, finder *f,
-                                    rc_dash_rows *rows) {
-  f->ground = rows->ground;
+static void find_rows(const finder *f, rc_dash_rows *rows) {
+  rows->ground = f->ground;
   rows->count = 0;
-  RC_TRY(rc_dashes_find(context, image, flags, &rows->ground, exponent, &f->dashes));
   while (rows->count < RC_MOST_DASH_ROWS && find_longest(f, rows, &rows->rows[rows->count]))
     rows->count++;
-  return rc_poll(context);
 }
 
 static int seen_in(const rc_dash_rows *rows) {
@@ -351,39 +347,42 @@ static int seen_in(const rc_dash_rows *rows) {
   return sum;
 }
 
-/* The horizon may be higher or lower than was said: where it is, more dashes lie in rows. */
-static recede_status try_horizons(rc_context *context, const rc_image *image, const rc_mask *flags,
-                                  int exponent, const rc_ground *said, finder *f,
-                                  rc_dash_rows *rows) {
+/* The horizon may be higher or lower than was said: where it is, more dashes lie in rows. The
+ * finder's are those of what was said. */
+static recede_status try_horizons(rc_context *context, finder *f, rc_dash_rows *rows, bool *any) {
   static const double farther[] = {0, -.05, .05, -.1, .1, -.15, .15};
   int most = 0;
-  rc_ground best = *said;
-  rc_block *mark = rc_mark(context);
+  const rc_ground said = f->ground;
+  const rc_dashes seen = f->dashes;
+  rc_ground best = said;
   for (size_t i = 0; i < sizeof farther / sizeof *farther; i++) {
-    rows->ground = rc_ground_tilted(said, 1 + farther[i]);
-    RC_TRY(find_on_ground(context, image, flags, exponent, f, rows));
-    if (seen_in(rows) > most) most = seen_in(rows), best = rows->ground;
-    if (f->dashes.count < LEAST_DASHES) break;
-    rc_release(context, mark);
+    f->ground = rc_ground_tilted(&said, 1 + farther[i]);
+    rc_dashes_move(&seen, &said, &f->ground, &f->dashes);
+    find_rows(f, rows);
+    if (seen_in(rows) > most) most = seen_in(rows), best = f->ground;
+    RC_TRY(rc_poll(context));
   }
-  rc_release(context, mark);
-  rows->ground = best;
+  f->ground = best;
+  *any = most > 0;
+  if (!*any) rows->count = 0;
   return RECEDE_OK;
 }
 
 recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, const rc_mask *flags,
                                 const rc_ground *ground, int exponent, rc_dash_rows *rows) {
-  finder f = {.flags = flags, .exponent = exponent};
+  finder f = {.flags = flags, .exponent = exponent, .ground = *ground, .drifts = true};
   f.reach = (double)(rc_longer_side(rc_box_of(flags, RC_TARGET)) << exponent) / 2;
-  f.drifts = true;
   rc_block *mark = rc_mark(context);
-  RC_TRY(try_horizons(context, image, flags, exponent, ground, &f, rows));
-  for (int i = 0; i <= CORRECTIONS; i++) {
+  RC_TRY(rc_dashes_find(context, image, flags, ground, exponent, &f.dashes));
+  bool any = false;
+  RC_TRY(try_horizons(context, &f, rows, &any));
+  for (int i = 0; i <= CORRECTIONS && any; i++) {
     f.drifts = i < CORRECTIONS;
     rc_release(context, mark);
-    RC_TRY(find_on_ground(context, image, flags, exponent, &f, rows));
-    if (!rows->count) break;
-    if (f.drifts && !correct(&f, rows->rows, &rows->ground)) i = CORRECTIONS - 1;
+    RC_TRY(rc_dashes_find(context, image, flags, &f.ground, exponent, &f.dashes));
+    find_rows(&f, rows);
+    any = rows->count > 0;
+    if (f.drifts && any && !correct(&f, rows->rows, &f.ground)) i = CORRECTIONS - 1;
   }
   find_beside(&f, rows);
   rc_dash_rows_choose(&f.dashes, flags, exponent, rows);

@@ -215,3 +215,30 @@ recede_status rc_dashes_find(rc_context *context, const rc_image *image, const r
   rc_release(context, mark);
   return RECEDE_OK;
 }
+
+static bool place_on(const rc_ground *old, const rc_ground *ground, double *u, double *v,
+                     double *w) {
+  double x, y;
+  return rc_ground_px(old, 0, *u, *v, &x, &y, w) && rc_ground_place(ground, 0, x, y, u, v, w);
+}
+
+void rc_dashes_move(const rc_dashes *from, const rc_ground *old, const rc_ground *ground,
+                    rc_dashes *to) {
+  *to = *from, to->count = 0;
+  for (int i = 0; i < from->count; i++) {
+    rc_dash d = from->found[i];
+    double u[4], v[4], w;
+    bool seen = true;
+    for (int k = 0; k < 4; k++) { /* its ends and sides */
+      double half = (k & 1 ? .5 : -.5) * (k < 2 ? d.length : d.width);
+      u[k] = d.u + half * (k < 2 ? d.a : -d.b), v[k] = d.v + half * (k < 2 ? d.b : d.a);
+      seen = seen && place_on(old, ground, &u[k], &v[k], &w);
+    }
+    if (!seen || !place_on(old, ground, &d.cut_u, &d.cut_v, &w) ||
+        !place_on(old, ground, &d.u, &d.v, &d.w))
+      continue;
+    d.length = hypot(u[1] - u[0], v[1] - v[0]), d.width = hypot(u[3] - u[2], v[3] - v[2]);
+    d.a = (u[1] - u[0]) / d.length, d.b = (v[1] - v[0]) / d.length;
+    to->found[to->count++] = d;
+  }
+}

@@ -31,5 +31,8 @@ typedef struct rc_dashes {
  */
 recede_status rc_dashes_find(rc_context *context, const rc_image *image, const rc_mask *flags,
                              const rc_ground *ground, int exponent, rc_dashes *dashes);
+/* The same dashes on another ground, nearly: what a px is there is not looked at anew. */
+void rc_dashes_move(const rc_dashes *from, const rc_ground *old, const rc_ground *ground,
+                    rc_dashes *to);
 
 #endif
