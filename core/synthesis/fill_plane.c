@@ -310,7 +310,6 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   e.gain = byte_gain(filled, &problem->flags);
   /* Again, for it is the texture's that counts; what is alike may be too little to tell. */
   RC_TRY(choose_surface(context, problem, &e, &raised));
-  if (rc_dash_rows_lie(&dashes) && params->surface == RECEDE_SURFACE_AUTO) raised = false;
   e.chart = chart_of(problem, raised);
   if (rc_runs(&known->rails)) {
     e.rails = rc_rails_in_chart(known, &e.chart);
@@ -320,7 +319,6 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     RC_TRY(find_regions(context, &e));
   }
   /* After the lines: a road's own dashes tell whether what crosses the hole repeats. */
-  for (int n = 0; n < e.level_count; n++) rc_dash_rows_take(&dashes, n, &e.flags[n]);
   if (params->engine_spots && !problem->synthesis) {
     RC_TRY(rc_drop_spots(context, &band, e.images, e.flags, e.level_count));
     RC_TRY(rc_drop_strangers(context, &band, e.images, e.flags, e.level_count));
@@ -336,6 +334,9 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                             params->engine_light && frontal, &e.conditions));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
+  /* After all that looks at what may be copied: a dash beside the hole says how much may stand out
+   * there. */
+  for (int n = 0; n < e.level_count; n++) rc_dash_rows_take(&dashes, n, &e.flags[n]);
   rc_rails found = e.rails;
   RC_TRY(rc_descend(context, &e, &finest));
   RC_TRY(rc_dash_rows_lay(context, &dashes, &finest));

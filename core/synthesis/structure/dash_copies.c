@@ -3,21 +3,21 @@
 #include "synthesis/structure/dash_row.h"
 #include "synthesis/structure/dash_rows.h"
 
-/* A dash is taken, and laid, so many times as wide and long as it is, and so many px of the finest
- * level (at least of the own level) more on each side: the join needs it. */
-#define TIMES_WIDTH 1.3
-#define TIMES_LENGTH 1.3
+/* A dash is laid so many times as wide and long as it is, and so many px of the finest level (at
+ * least of the own level) more on each side: the join needs it. It is taken as it is, and as many
+ * more. */
+#define TIMES_LAID 1.3
 #define MARGIN_PX 4.
 #define LEAST_MARGIN_PX 1.
 
 /* Which of a row's dashes a place, x, y in px of the finest level, is part of or lies beside.
  * False: none. */
 static bool lies_in(const rc_ground *ground, const rc_dash_row *row, double x, double y,
-                    double margin_px, int *n) {
+                    double times, double margin_px, int *n) {
   double u, v, w, dash_x, dash_y;
   if (!rc_ground_place(ground, 0, x, y, &u, &v, &w)) return false;
   double t = rc_dash_along(row, u, v), side = rc_dash_across(row, u, v);
-  double most_side = .5 * TIMES_WIDTH * row->width, most_off = .5 * TIMES_LENGTH * row->length;
+  double most_side = .5 * times * row->width, most_off = .5 * times * row->length;
   *n = rc_dash_number(row, t);
   if (*n < row->low || *n > row->high || side > most_side + row->length) return false;
   /* The dash's place that is next to it. */
@@ -29,27 +29,29 @@ static bool lies_in(const rc_ground *ground, const rc_dash_row *row, double x, d
          hypot(x - dash_x, y - dash_y) <= margin_px;
 }
 
+static const rc_dash_laid *find_laid(const rc_dash_row *row, int n) {
+  for (int i = 0; i < row->laid_count; i++)
+    if (row->laid[i].number == n) return &row->laid[i];
+  return NULL;
+}
+
+/* Wholly or in part. */
+static bool is_seen(const rc_dash_row *row, int n) {
+  for (int i = 0; i < row->seen_count; i++)
+    if (row->seen[i] == n) return true;
+  return find_laid(row, n) != NULL;
+}
+
 void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *flags) {
   double unit = (double)(1 << exponent), margin_px = fmax(MARGIN_PX, LEAST_MARGIN_PX * unit);
   int n;
   for (int y = 0; y < flags->height && rows->count; y++)
     for (int x = 0; x < flags->width; x++)
       for (int i = 0; i < rows->count && *rc_flag(flags, x, y) & RC_SOURCE; i++)
-        if (lies_in(&rows->ground, &rows->rows[i], (x + .5) * unit - .5, (y + .5) * unit - .5,
-                    margin_px, &n))
+        if (lies_in(&rows->ground, &rows->rows[i], (x + .5) * unit - .5, (y + .5) * unit - .5, 1,
+                    margin_px, &n) &&
+            is_seen(&rows->rows[i], n))
           *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
-}
-
-bool rc_dash_rows_lie(const rc_dash_rows *rows) {
-  for (int i = 0; i < rows->count; i++)
-    if (rows->rows[i].laid_count) return true;
-  return false;
-}
-
-static const rc_dash_laid *find_laid(const rc_dash_row *row, int n) {
-  for (int i = 0; i < row->laid_count; i++)
-    if (row->laid[i].number == n) return &row->laid[i];
-  return NULL;
 }
 
 bool rc_dash_rows_copy(const rc_dash_rows *rows, const rc_chart *chart, float x, float y,
@@ -59,7 +61,7 @@ bool rc_dash_rows_copy(const rc_dash_rows *rows, const rc_chart *chart, float x,
   int n;
   for (int i = 0; i < rows->count; i++) {
     const rc_dash_row *row = &rows->rows[i];
-    if (!lies_in(ground, row, at_x, at_y, MARGIN_PX, &n)) continue;
+    if (!lies_in(ground, row, at_x, at_y, TIMES_LAID, MARGIN_PX, &n)) continue;
     const rc_dash_laid *laid = find_laid(row, n);
     if (!laid || !rc_ground_place(ground, 0, at_x, at_y, &u, &v, &w)) continue;
     double t = rc_dash_place(row, n);

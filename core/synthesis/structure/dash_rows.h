@@ -41,9 +41,7 @@ typedef struct rc_dash_rows {
 /* image and flags: a level 2^exponent times coarser than the finest. */
 recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, const rc_mask *flags,
                                 const rc_ground *ground, int exponent, rc_dash_rows *rows);
-/* Whether any is laid into the hole: then the plane is paved, and lies flat. */
-bool rc_dash_rows_lie(const rc_dash_rows *rows);
-/* Takes RC_SOURCE from a level's pixels that lie in rows. */
+/* Takes RC_SOURCE from a level's pixels that are part of rows' dashes, or lie beside them. */
 void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *flags);
 /* The copy of a pixel of the finest level, relative to the chart's origin. False: no dash is laid
  * there. */
