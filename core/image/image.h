@@ -11,8 +11,8 @@ typedef struct rc_image {
 } rc_image;
 
 /* What a pixel is. TARGET: to be filled. KNOWN: has a value that must be continued. SOURCE: known,
- * and may be copied from. ALLOWED: was a source before it was too far away. 0: nothing there
- * (transparent, not finite, beyond the horizon). */
+ * and may be copied from. ALLOWED: was a source at first, where that is asked for later. 0: nothing
+ * there (transparent, not finite, beyond the horizon). */
 enum { RC_TARGET = 1, RC_KNOWN = 2, RC_SOURCE = 4, RC_ALLOWED = 8 };
 
 typedef struct rc_mask {

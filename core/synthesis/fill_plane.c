@@ -178,7 +178,12 @@ static recede_status find_dashes(rc_context *context, const rc_problem *problem,
   rc_ground ground = rc_ground_of(
       &chart, (double)chart.x0 + problem->origin_x - (plane->width - 1) / 2.,
       (double)chart.y0 + problem->origin_y - (plane->height - 1) / 2., plane->focal_px);
-  return rc_dash_rows_find(context, &e->images[from], &e->flags[from], &ground, from, rows);
+  RC_TRY(rc_dash_rows_find(context, &e->images[from], &e->flags[from], &ground, from, rows));
+  /* What is laid may be copied wherever there was a source at first. */
+  for (size_t i = 0;
+       i < (size_t)problem->flags.width * (size_t)problem->flags.height && rows->count; i++)
+    if (problem->flags.data[i] & RC_SOURCE) problem->flags.data[i] |= RC_ALLOWED;
+  return rc_poll(context);
 }
 
 /* Two textures in the hole that no line tells apart, or of which one has two edges. */

@@ -47,23 +47,33 @@ recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int c
   return RECEDE_OK;
 }
 
-recede_status rc_dash_rows_lay(rc_context *context, const rc_dash_rows *rows, rc_level *finest) {
+static void lay(const rc_ground *ground, const rc_dash_row *row, const rc_dash_laid *laid,
+                rc_level *finest) {
   rc_copy copy;
-  int sx, sy;
-  if (!rows->count) return RECEDE_OK;
-  RC_TRY(RC_NEW_ZERO(context, (size_t)finest->box_w * (size_t)finest->box_h, &finest->laid));
-  for (int y = finest->box.y0; y < finest->box.y1; y++)
-    for (int x = finest->box.x0; x < finest->box.x1; x++) {
+  size_t from;
+  rc_box box = rc_dash_laid_box(ground, row, laid, finest->box);
+  for (int y = box.y0; y < box.y1; y++)
+    for (int x = box.x0; x < box.x1; x++) {
       float at_x = rc_level_x(finest, x), at_y = rc_level_y(finest, y);
       if (!rc_level_is_target(finest, x, y) ||
-          !rc_dash_rows_copy(rows, &finest->chart, at_x, at_y, &copy))
+          !rc_dash_laid_copy(ground, row, laid, &finest->chart, at_x, at_y, &copy))
         continue;
       rc_place place = rc_copy_place(&finest->chart, copy, at_x, at_y);
-      if (!rc_place_px(finest, &place, &sx, &sy) ||
-          !(finest->flags[(size_t)sy * (size_t)finest->width + (size_t)sx] & RC_KNOWN))
+      if (!rc_place_at(finest, &place, &from) ||
+          (finest->flags[from] & (RC_TARGET | RC_ALLOWED)) != RC_ALLOWED)
         continue;
       finest->field[rc_level_at(finest, x, y)] = copy;
       finest->laid[rc_level_at(finest, x, y)] = 1;
     }
-  return rc_poll(context);
+}
+
+recede_status rc_dash_rows_lay(rc_context *context, const rc_dash_rows *rows, rc_level *finest) {
+  if (!rows->count) return RECEDE_OK;
+  RC_TRY(RC_NEW_ZERO(context, (size_t)finest->box_w * (size_t)finest->box_h, &finest->laid));
+  for (int i = 0; i < rows->count; i++)
+    for (int k = 0; k < rows->rows[i].laid_count; k++) {
+      lay(&rows->ground, &rows->rows[i], &rows->rows[i].laid[k], finest);
+      RC_TRY(rc_poll(context));
+    }
+  return RECEDE_OK;
 }

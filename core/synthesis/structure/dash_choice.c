@@ -59,20 +59,9 @@ static bool off_away(const chooser *c, int x, int y, double du, double dv, int r
   return true;
 }
 
-/* Around a row's n-th, px of the level. */
 static rc_box box_of(const chooser *c, const rc_dash_row *row, int n) {
-  double low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
-  for (int k = 0; k < 4; k++) {
-    double t = rc_dash_place(row, n) + (k & 1 ? .5 : -.5) * PART_ALONG * row->length, x, y, w;
-    double side = (k & 2 ? .5 : -.5) * PART_ACROSS * row->width;
-    if (!rc_ground_px(c->ground, c->exponent, row->u + t * row->a - side * row->b,
-                      row->v + t * row->b + side * row->a, &x, &y, &w))
-      return (rc_box){0, 0, 0, 0};
-    low_x = fmin(low_x, x), high_x = fmax(high_x, x);
-    low_y = fmin(low_y, y), high_y = fmax(high_y, y);
-  }
-  return (rc_box){(int)fmax(low_x, 0), (int)fmax(low_y, 0), (int)fmin(high_x + 2, c->flags->width),
-                  (int)fmin(high_y + 2, c->flags->height)};
+  rc_box all = {0, 0, c->flags->width, c->flags->height};
+  return rc_dash_box(c->ground, row, n, c->exponent, PART_ALONG, PART_ACROSS, 0, all);
 }
 
 static bool is_within(const chooser *c, const rc_dash_row *row, int n, int x, int y) {
@@ -122,7 +111,7 @@ static bool move(const chooser *c, const rc_dash_row *row, int n, const candidat
   for (int down = -MOST_MOVED_PX; down <= MOST_MOVED_PX; down++)
     for (int right = -MOST_MOVED_PX; right <= MOST_MOVED_PX; right++) {
       double off = misfit_of(c, row, n, du, dv, right, down);
-      double far = PRICE_OF_MOVING * hypot(right, down);
+      double far = PRICE_OF_MOVING * sqrt((double)(right * right + down * down));
       if (off + far >= least ||
           !rc_ground_place(c->ground, c->exponent, x + right, y + down, &laid->u, &laid->v, &w))
         continue;

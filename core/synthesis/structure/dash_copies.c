@@ -10,67 +10,76 @@
 #define MARGIN_PX 4.
 #define LEAST_MARGIN_PX 1.
 
-/* Which of a row's dashes a place, x, y in px of the finest level, is part of or lies beside.
- * False: none. */
-static bool lies_in(const rc_ground *ground, const rc_dash_row *row, double x, double y,
-                    double times, double margin_px, int *n) {
+rc_box rc_dash_box(const rc_ground *ground, const rc_dash_row *row, int n, int exponent,
+                   double times_along, double times_across, double margin_px, rc_box within) {
+  double low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
+  for (int k = 0; k < 4; k++) {
+    double t = rc_dash_place(row, n) + (k & 1 ? .5 : -.5) * times_along * row->length, x, y, w;
+    double side = (k & 2 ? .5 : -.5) * times_across * row->width;
+    if (!rc_ground_px(ground, exponent, row->u + t * row->a - side * row->b,
+                      row->v + t * row->b + side * row->a, &x, &y, &w))
+      return (rc_box){0, 0, 0, 0};
+    low_x = fmin(low_x, x), high_x = fmax(high_x, x);
+    low_y = fmin(low_y, y), high_y = fmax(high_y, y);
+  }
+  return rc_box_common((rc_box){(int)floor(low_x - margin_px), (int)floor(low_y - margin_px),
+                                (int)floor(high_x + margin_px) + 2,
+                                (int)floor(high_y + margin_px) + 2},
+                       within);
+}
+
+/* Whether a place, x, y in px of the finest level, is part of a row's n-th or lies beside it. */
+static bool lies_in(const rc_ground *ground, const rc_dash_row *row, int n, double x, double y,
+                    double times, double margin_px) {
   double u, v, w, dash_x, dash_y;
   if (!rc_ground_place(ground, 0, x, y, &u, &v, &w)) return false;
   double t = rc_dash_along(row, u, v), side = rc_dash_across(row, u, v);
   double most_side = .5 * times * row->width, most_off = .5 * times * row->length;
-  *n = rc_dash_number(row, t);
-  if (*n < row->low || *n > row->high || side > most_side + row->length) return false;
   /* The dash's place that is next to it. */
-  double due = rc_dash_place(row, *n),
-         sign = (v - row->v) * row->a < (u - row->u) * row->b ? -1 : 1;
+  double due = rc_dash_place(row, n), sign = (v - row->v) * row->a < (u - row->u) * row->b ? -1 : 1;
   t = fmin(fmax(t, due - most_off), due + most_off), side = sign * fmin(side, most_side);
   return rc_ground_px(ground, 0, row->u + t * row->a - side * row->b,
                       row->v + t * row->b + side * row->a, &dash_x, &dash_y, &w) &&
-         hypot(x - dash_x, y - dash_y) <= margin_px;
+         (x - dash_x) * (x - dash_x) + (y - dash_y) * (y - dash_y) <= margin_px * margin_px;
 }
 
-static const rc_dash_laid *find_laid(const rc_dash_row *row, int n) {
-  for (int i = 0; i < row->laid_count; i++)
-    if (row->laid[i].number == n) return &row->laid[i];
-  return NULL;
-}
-
-/* Wholly or in part. */
-static bool is_seen(const rc_dash_row *row, int n) {
-  for (int i = 0; i < row->seen_count; i++)
-    if (row->seen[i] == n) return true;
-  return find_laid(row, n) != NULL;
+static void take(const rc_ground *ground, const rc_dash_row *row, int n, int exponent,
+                 const rc_mask *flags) {
+  double unit = (double)(1 << exponent), margin_px = fmax(MARGIN_PX, LEAST_MARGIN_PX * unit);
+  rc_box all = {0, 0, flags->width, flags->height};
+  rc_box box = rc_dash_box(ground, row, n, exponent, 1, 1, margin_px / unit, all);
+  for (int y = box.y0; y < box.y1; y++)
+    for (int x = box.x0; x < box.x1; x++)
+      if (lies_in(ground, row, n, (x + .5) * unit - .5, (y + .5) * unit - .5, 1, margin_px))
+        *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
 }
 
 void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *flags) {
-  double unit = (double)(1 << exponent), margin_px = fmax(MARGIN_PX, LEAST_MARGIN_PX * unit);
-  int n;
-  for (int y = 0; y < flags->height && rows->count; y++)
-    for (int x = 0; x < flags->width; x++)
-      for (int i = 0; i < rows->count && *rc_flag(flags, x, y) & RC_SOURCE; i++)
-        if (lies_in(&rows->ground, &rows->rows[i], (x + .5) * unit - .5, (y + .5) * unit - .5, 1,
-                    margin_px, &n) &&
-            is_seen(&rows->rows[i], n))
-          *rc_flag(flags, x, y) &= (uint8_t)~RC_SOURCE;
-}
-
-bool rc_dash_rows_copy(const rc_dash_rows *rows, const rc_chart *chart, float x, float y,
-                       rc_copy *copy) {
-  const rc_ground *ground = &rows->ground;
-  double at_x = (double)x + ground->x0, at_y = (double)y + ground->y0, from_x, from_y, u, v, w;
-  int n;
   for (int i = 0; i < rows->count; i++) {
     const rc_dash_row *row = &rows->rows[i];
-    if (!lies_in(ground, row, at_x, at_y, TIMES_LAID, MARGIN_PX, &n)) continue;
-    const rc_dash_laid *laid = find_laid(row, n);
-    if (!laid || !rc_ground_place(ground, 0, at_x, at_y, &u, &v, &w)) continue;
-    double t = rc_dash_place(row, n);
-    u += laid->u - row->u - t * row->a, v += laid->v - row->v - t * row->b;
-    if (!rc_ground_px(ground, 0, u, v, &from_x, &from_y, &w)) return false;
-    *copy = rc_copy_exact(chart, x, y, (float)(from_x - ground->x0), (float)(from_y - ground->y0));
-    return true;
+    for (int k = 0; k < row->seen_count; k++)
+      take(&rows->ground, row, row->seen[k], exponent, flags);
+    for (int k = 0; k < row->laid_count; k++)
+      take(&rows->ground, row, row->laid[k].number, exponent, flags);
   }
-  return false;
+}
+
+rc_box rc_dash_laid_box(const rc_ground *ground, const rc_dash_row *row, const rc_dash_laid *laid,
+                        rc_box within) {
+  return rc_dash_box(ground, row, laid->number, 0, TIMES_LAID, TIMES_LAID, MARGIN_PX, within);
+}
+
+bool rc_dash_laid_copy(const rc_ground *ground, const rc_dash_row *row, const rc_dash_laid *laid,
+                       const rc_chart *chart, float x, float y, rc_copy *copy) {
+  double at_x = (double)x + ground->x0, at_y = (double)y + ground->y0, from_x, from_y, u, v, w;
+  if (!lies_in(ground, row, laid->number, at_x, at_y, TIMES_LAID, MARGIN_PX) ||
+      !rc_ground_place(ground, 0, at_x, at_y, &u, &v, &w))
+    return false;
+  double t = rc_dash_place(row, laid->number);
+  u += laid->u - row->u - t * row->a, v += laid->v - row->v - t * row->b;
+  if (!rc_ground_px(ground, 0, u, v, &from_x, &from_y, &w)) return false;
+  *copy = rc_copy_exact(chart, x, y, (float)(from_x - ground->x0), (float)(from_y - ground->y0));
+  return true;
 }
 
 void rc_dash_rows_drop_lines(const rc_dash_rows *rows, rc_crossing lines[RC_MOST_LINES],

@@ -36,6 +36,9 @@ static inline bool rc_dashes_alike(const rc_dash_row *row, double length, double
          fabs(a * row->a + b * row->b) > RC_DASHES_PARALLEL;
 }
 
+/* Around a row's n-th, so many times as long and wide and a margin more, px of a level. */
+rc_box rc_dash_box(const rc_ground *ground, const rc_dash_row *row, int n, int exponent,
+                   double times_along, double times_across, double margin_px, rc_box within);
 /* Chooses what is laid into the hole, of rows that are found: dashes of a size that will do and, of
  * one that is seen in part, such that fit that. */
 void rc_dash_rows_choose(const rc_dashes *dashes, const rc_mask *flags, int exponent,

@@ -74,7 +74,7 @@ static bool is_one_of(const finder *f, const rc_dash_row *row, const rc_dash *d,
          rc_ground_px(&f->ground, f->exponent, d->u, d->v, &x, &y, &w) &&
          rc_ground_px(&f->ground, f->exponent, row->u + due * row->a, row->v + due * row->b, &due_x,
                       &due_y, &w) &&
-         hypot(x - due_x, y - due_y) <= OFF_PLACE_PX;
+         rc_distance(x - due_x, y - due_y) <= OFF_PLACE_PX;
 }
 
 static void gather(const finder *f, rc_dash_row *row) {
@@ -103,7 +103,7 @@ static bool would_be_seen(const finder *f, const rc_dash_row *row, int n) {
         !is_seen(f, x[k], y[k]))
       return false;
   }
-  return hypot(x[2] - x[0], y[2] - y[0]) >= LEAST_SEEN_PX;
+  return rc_distance(x[2] - x[0], y[2] - y[0]) >= LEAST_SEEN_PX;
 }
 
 static bool is_there(const finder *f, const rc_dash_row *row, int n) {

@@ -43,10 +43,13 @@ recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, cons
                                 const rc_ground *ground, int exponent, rc_dash_rows *rows);
 /* Takes RC_SOURCE from a level's pixels that are part of rows' dashes, or lie beside them. */
 void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *flags);
-/* The copy of a pixel of the finest level, relative to the chart's origin. False: no dash is laid
- * there. */
-bool rc_dash_rows_copy(const rc_dash_rows *rows, const rc_chart *chart, float x, float y,
-                       rc_copy *copy);
+/* Around a dash that is laid, with what lies beside it, px of the finest level. */
+rc_box rc_dash_laid_box(const rc_ground *ground, const rc_dash_row *row, const rc_dash_laid *laid,
+                        rc_box within);
+/* The copy of a pixel of the finest level, relative to the chart's origin. False: it is no part of
+ * the dash and lies not beside it. */
+bool rc_dash_laid_copy(const rc_ground *ground, const rc_dash_row *row, const rc_dash_laid *laid,
+                       const rc_chart *chart, float x, float y, rc_copy *copy);
 /* Takes out lines that run along a row: it says what they show in the hole. */
 void rc_dash_rows_drop_lines(const rc_dash_rows *rows, rc_crossing lines[RC_MOST_LINES],
                              int *count);

@@ -46,7 +46,7 @@ static bool is_looked_at(const finder *f, int x, int y) {
   return w > 1 / WIDEST_RATIO && w < WIDEST_RATIO;
 }
 
-static void sum_up(const finder *f) {
+static recede_status sum_up(rc_context *context, const finder *f) {
   size_t stride = (size_t)f->image->width + 1;
   for (int y = 0; y < f->image->height; y++) {
     size_t at = ((size_t)y + 1) * stride + 1;
@@ -57,15 +57,17 @@ static void sum_up(const finder *f) {
       f->sums[at] = f->sums[at - stride] + row;
       f->counts[at] = f->counts[at - stride] + count;
     }
+    RC_TRY(rc_poll(context));
   }
+  return RECEDE_OK;
 }
 
 static int clamp(int v, int most) { return v < 0 ? 0 : v > most ? most : v; }
 
-static void compare(const finder *f) {
+static recede_status compare(rc_context *context, const finder *f) {
   int width = f->image->width, height = f->image->height;
   size_t stride = (size_t)width + 1;
-  for (int y = 0; y < height; y++)
+  for (int y = 0; y < height; y++) {
     for (int x = 0; x < width; x++) {
       float *off = &f->off[(size_t)y * (size_t)width + (size_t)x];
       *off = 0;
@@ -80,6 +82,9 @@ static void compare(const finder *f) {
           f->counts[end + x1] - f->counts[end + x0] - f->counts[top + x1] + f->counts[top + x0];
       *off = rc_brightness_at(f->image, x, y) - (float)(sum / count);
     }
+    RC_TRY(rc_poll(context));
+  }
+  return RECEDE_OK;
 }
 
 static float usual_difference(const finder *f) {
@@ -204,9 +209,8 @@ recede_status rc_dashes_find(rc_context *context, const rc_image *image, const r
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW_ZERO(context, (width + 1) * (height + 1), &f.sums));
   RC_TRY(RC_NEW_ZERO(context, (width + 1) * (height + 1), &f.counts));
-  sum_up(&f);
-  compare(&f);
-  RC_TRY(rc_poll(context));
+  RC_TRY(sum_up(context, &f));
+  RC_TRY(compare(context, &f));
   f.least = fmaxf(TIMES_MEDIAN * usual_difference(&f), LEAST_CONTRAST);
   RC_FREE(context, &f.sums);
   RC_TRY(RC_NEW(context, width * height, &f.stack));
@@ -237,7 +241,8 @@ void rc_dashes_move(const rc_dashes *from, const rc_ground *old, const rc_ground
     if (!seen || !place_on(old, ground, &d.cut_u, &d.cut_v, &w) ||
         !place_on(old, ground, &d.u, &d.v, &d.w))
       continue;
-    d.length = hypot(u[1] - u[0], v[1] - v[0]), d.width = hypot(u[3] - u[2], v[3] - v[2]);
+    d.length = rc_distance(u[1] - u[0], v[1] - v[0]),
+    d.width = rc_distance(u[3] - u[2], v[3] - v[2]);
     d.a = (u[1] - u[0]) / d.length, d.b = (v[1] - v[0]) / d.length;
     to->found[to->count++] = d;
   }

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #define LEAST_W 1e-6
+#define FARTHEST_PX 1e6
 
 /* A ray (x, y, f) meets the plane at P = (x, y, f) / w, times its distance. With p = X / w, for
  * which 1 / w = 1 - l . p, and o from the picture's middle to the origin of X, that is P = (p + o
@@ -63,5 +64,5 @@ bool rc_ground_px(const rc_ground *ground, int exponent, double u, double v, dou
   *w = 1 / inverse;
   *x = (px * *w + ground->x0 + .5) / unit - .5;
   *y = (py * *w + ground->y0 + .5) / unit - .5;
-  return true;
+  return fabs(*x) < FARTHEST_PX && fabs(*y) < FARTHEST_PX;
 }

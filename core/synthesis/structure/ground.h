@@ -3,6 +3,7 @@
 #ifndef RECEDE_SYNTHESIS_STRUCTURE_GROUND_H
 #define RECEDE_SYNTHESIS_STRUCTURE_GROUND_H
 
+#include <math.h>
 #include <stdbool.h>
 
 #include "synthesis/copy.h"
@@ -14,6 +15,9 @@ typedef struct rc_ground {
   double a, b, c; /* of p = X / w: u = a px + b py, v = c py */
 } rc_ground;
 
+/* The C library's hypot chooses other code by processor. */
+static inline double rc_distance(double x, double y) { return sqrt(x * x + y * y); }
+
 /* chart: of the finest level. */
 rc_ground rc_ground_of(const rc_chart *chart, double from_x, double from_y, double focal_px);
 /* The plane turned: w grows by this part for each px along the unit vector (along_u, along_v). */
@@ -23,7 +27,7 @@ rc_ground rc_ground_tilted(const rc_ground *ground, double times);
 /* Where a px of a level 2^exponent times coarser lies, and its w. False: beyond the horizon. */
 bool rc_ground_place(const rc_ground *ground, int exponent, double x, double y, double *u,
                      double *v, double *w);
-/* And back. */
+/* And back. False also where that is farther away than any picture is large. */
 bool rc_ground_px(const rc_ground *ground, int exponent, double u, double v, double *x, double *y,
                   double *w);
 
