@@ -96,6 +96,31 @@ static void end_where_they_end(void) {
     g_assert_cmpfloat(painted_right(0, SLANT_DEG, hole, "quality=draft").wrong, <, 20);
 }
 
+/* A dash that is marked with little around it does not come back. */
+static void may_be_taken_away(void) {
+  end = INFINITY;
+  for (int wide = 0; wide < 3; wide++) {
+    picture truth = draw_road(0);
+    task t = task_new(picture_copy(&truth), "surface=flat quality=draft");
+    double wrong = 0, inside = 0;
+    int reach = 3 + 2 * wide;
+    area dash = {310, 262, 329, 297};
+    t.params.slant_deg = SLANT_DEG;
+    for (int y = dash.y0; y < dash.y1; y++)
+      for (int x = dash.x0; x < dash.x1; x++) inside += picture_get(&truth, x, y, 0) > .8f;
+    task_hole(&t, (area){dash.x0 - reach, dash.y0 - reach, dash.x1 + reach, dash.y1 + reach});
+    task_succeeds(&t);
+    for (int y = dash.y0 - reach; y < dash.y1 + reach; y++)
+      for (int x = dash.x0 - reach; x < dash.x1 + reach; x++)
+        wrong += picture_get(&t.result, x, y, 0) > .6f;
+    g_test_message("%d px around a dash of %.0f px: %.0f px of paint", reach, inside, wrong);
+    g_assert_cmpfloat(inside, >, 80);
+    g_assert_cmpfloat(wrong, <, 20);
+    task_clear(&t);
+    picture_clear(&truth);
+  }
+}
+
 /* A line that cuts a corner off a hole leaves it at flat angles. */
 static void lines_cut_corners(void) {
   static const area hole = {420, 180, 560, 300};
@@ -130,6 +155,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/dashes/come-again", come_again);
   g_test_add_func("/dashes/horizon", correct_the_horizon);
   g_test_add_func("/dashes/end", end_where_they_end);
+  g_test_add_func("/dashes/away", may_be_taken_away);
   g_test_add_func("/dashes/corner", lines_cut_corners);
   g_test_add_func("/dashes/walls", walls_have_none);
   return g_test_run();

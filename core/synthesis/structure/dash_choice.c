@@ -26,6 +26,13 @@
 /* So many are tried, the cheapest first. */
 #define MOST_TRIES 6
 
+/* A hole that follows a dash is there to take it away: so much more of the dash is hidden than of
+ * what lies around it, so many times its width to each side and beyond its ends. Places that are
+ * looked at, along and across. */
+#define FOLLOWS .5
+#define AROUND 4.
+#define PLACES 32
+
 typedef struct chooser {
   const rc_dashes *dashes;
   const rc_mask *flags;
@@ -77,6 +84,23 @@ static bool is_hidden(const chooser *c, const rc_dash_row *row, int n) {
     for (int x = box.x0; x < box.x1; x++)
       if (*rc_flag(c->flags, x, y) & RC_TARGET && is_within(c, row, n, x, y)) return true;
   return false;
+}
+
+static bool is_to_go(const chooser *c, const rc_dash_row *row, int n) {
+  double hidden[2] = {0, 0}, all[2] = {0, 0}, x, y, w; /* around it, and of it */
+  for (int k = 0; k < PLACES * PLACES; k++) {
+    double t = (k % PLACES + .5) / PLACES - .5, side = (k / PLACES + .5) / PLACES - .5;
+    t *= row->length + 2 * AROUND * row->width, side *= (1 + 2 * AROUND) * row->width;
+    double along = rc_dash_place(row, n) + t;
+    bool own = fabs(t) < .5 * row->length && fabs(side) < .5 * row->width;
+    if (!rc_ground_px(c->ground, c->exponent, row->u + along * row->a - side * row->b,
+                      row->v + along * row->b + side * row->a, &x, &y, &w))
+      continue;
+    int px = (int)floor(x + .5), py = (int)floor(y + .5);
+    if (!rc_inside(c->flags->width, c->flags->height, px, py)) continue;
+    all[own]++, hidden[own] += (*rc_flag(c->flags, px, py) & RC_TARGET) != 0;
+  }
+  return all[0] > 0 && all[1] > 0 && hidden[1] / all[1] - hidden[0] / all[0] > FOLLOWS;
 }
 
 /* How badly what lies (du, dv) away, moved by so many px of the level, fits the part of the n-th
@@ -199,7 +223,7 @@ void rc_dash_rows_choose(const rc_dashes *dashes, const rc_mask *flags, int expo
     row->laid_count = 0;
     for (int n = row->low; n <= row->high && row->laid_count < RC_MOST_IN_ROW; n++) {
       rc_dash_laid laid = {.number = n};
-      if (is_hidden(&c, row, n) && choose(&c, rows, row, n, &laid))
+      if (is_hidden(&c, row, n) && !is_to_go(&c, row, n) && choose(&c, rows, row, n, &laid))
         row->laid[row->laid_count++] = laid;
     }
   }
