@@ -202,7 +202,9 @@ static uint8_t add_edge(const composition *c, int x, int y, int e, const float *
   size_t at = rc_level_at(level, nx, ny);
   rc_copy other = level->field[at];
   const float *neighbour = c->value + at * (size_t)c->channels;
-  bool one_thing = level->laid && level->laid[rc_level_at(level, x, y)] && level->laid[at];
+  /* Of one dash, whatever its copies are. */
+  bool one_thing =
+      level->laid && level->laid[at] && level->laid[at] == level->laid[rc_level_at(level, x, y)];
   if (isnan(other.a) || rc_same_copy(own, other) || one_thing) return count_of(c, value, neighbour);
   bool own_goes_on = copy_value(c, own, nx, ny, there);
   bool other_goes_on = copy_value(c, other, x, y, back);

@@ -41,13 +41,12 @@ typedef struct rc_level {
   rc_chart chart;
   rc_box box; /* of the target */
   int box_w, box_h;
-  rc_copy *field;  /* box_w * box_h, row by row; NAN a = none yet */
-  float *cost;     /* of the field's copies without the price of incoherence */
-  uint8_t *locked; /* box pixels whose copy stays; NULL = none */
-  uint8_t
-      *laid; /* of the finest: box pixels of a dash, one thing whatever its copies are; or NULL */
-  uint8_t *board;                      /* of each pixel, modulo 256; NULL = there are none */
-  uint8_t *classes;                    /* class of each box pixel */
+  rc_copy *field;   /* box_w * box_h, row by row; NAN a = none yet */
+  float *cost;      /* of the field's copies without the price of incoherence */
+  uint8_t *locked;  /* box pixels whose copy stays; NULL = none */
+  uint8_t *laid;    /* of the finest: box pixels of a dash, its number; or NULL */
+  uint8_t *board;   /* of each pixel, modulo 256; NULL = there are none */
+  uint8_t *classes; /* class of each box pixel */
   int32_t lane_offset[RC_PATCH_LANES]; /* of each lane of a patch, in pixels */
   rc_ranges ranges;
   rc_sides sides;

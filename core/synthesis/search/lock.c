@@ -10,6 +10,9 @@
 #define LOCKED_PX 5.f
 #define LEAST_LOCKED_PX 1.f
 
+/* Nearly all that a sample counts lies so near, in px of the size that is wanted. */
+#define SAMPLED_PX 1
+
 static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
   const rc_chart *chart = &level->chart;
   float unit = (float)(1 << exponent), reach = fmaxf(LOCKED_PX / unit, LEAST_LOCKED_PX);
@@ -47,32 +50,46 @@ recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int c
   return RECEDE_OK;
 }
 
+/* Whether what a sample there counts may be copied. */
+static bool may_be_laid(const rc_level *level, const rc_place *place) {
+  int sx, sy, reach = SAMPLED_PX;
+  if (!rc_place_px(level, place, &sx, &sy)) return false;
+  if (place->ratio > 1.f) reach = (int)(SAMPLED_PX * place->ratio);
+  if (sx < reach || sy < reach || sx + reach >= level->width || sy + reach >= level->height)
+    return false;
+  for (int y = sy - reach; y <= sy + reach; y++)
+    for (int x = sx - reach; x <= sx + reach; x++)
+      if ((level->flags[(size_t)y * (size_t)level->width + (size_t)x] & (RC_TARGET | RC_ALLOWED)) !=
+          RC_ALLOWED)
+        return false;
+  return true;
+}
+
 static void lay(const rc_ground *ground, const rc_dash_row *row, const rc_dash_laid *laid,
-                rc_level *finest) {
+                uint8_t number, rc_level *finest) {
   rc_copy copy;
-  size_t from;
   rc_box box = rc_dash_laid_box(ground, row, laid, finest->box);
   for (int y = box.y0; y < box.y1; y++)
     for (int x = box.x0; x < box.x1; x++) {
       float at_x = rc_level_x(finest, x), at_y = rc_level_y(finest, y);
-      if (!rc_level_is_target(finest, x, y) ||
+      size_t at = rc_level_at(finest, x, y);
+      if (!rc_level_is_target(finest, x, y) || finest->laid[at] ||
           !rc_dash_laid_copy(ground, row, laid, &finest->chart, at_x, at_y, &copy))
         continue;
       rc_place place = rc_copy_place(&finest->chart, copy, at_x, at_y);
-      if (!rc_place_at(finest, &place, &from) ||
-          (finest->flags[from] & (RC_TARGET | RC_ALLOWED)) != RC_ALLOWED)
-        continue;
-      finest->field[rc_level_at(finest, x, y)] = copy;
-      finest->laid[rc_level_at(finest, x, y)] = 1;
+      if (!may_be_laid(finest, &place)) continue;
+      finest->field[at] = copy;
+      finest->laid[at] = number;
     }
 }
 
 recede_status rc_dash_rows_lay(rc_context *context, const rc_dash_rows *rows, rc_level *finest) {
+  uint8_t number = 0; /* 8 rows of 24 at the most */
   if (!rows->count) return RECEDE_OK;
   RC_TRY(RC_NEW_ZERO(context, (size_t)finest->box_w * (size_t)finest->box_h, &finest->laid));
   for (int i = 0; i < rows->count; i++)
     for (int k = 0; k < rows->rows[i].laid_count; k++) {
-      lay(&rows->ground, &rows->rows[i], &rows->rows[i].laid[k], finest);
+      lay(&rows->ground, &rows->rows[i], &rows->rows[i].laid[k], ++number, finest);
       RC_TRY(rc_poll(context));
     }
   return RECEDE_OK;

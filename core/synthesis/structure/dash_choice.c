@@ -108,16 +108,18 @@ static bool is_to_go(const chooser *c, const rc_dash_row *row, int n) {
 static double misfit_of(const chooser *c, const rc_dash_row *row, int n, double du, double dv,
                         int right, int down) {
   double squares = 0, here, there;
-  int seen = 0;
+  int seen = 0, wanted = 0;
   rc_box box = box_of(c, row, n);
   for (int y = box.y0; y < box.y1; y++)
     for (int x = box.x0; x < box.x1; x++) {
-      if (!is_within(c, row, n, x, y) || !off_at(c, x, y, &here) ||
-          !off_away(c, x, y, du, dv, right, down, &there))
-        continue;
+      if (!is_within(c, row, n, x, y) || !off_at(c, x, y, &here)) continue;
+      wanted++;
+      if (!off_away(c, x, y, du, dv, right, down, &there)) continue;
       squares += (here - there) * (here - there), seen++;
     }
-  return seen < LEAST_SEEN ? 0 : squares / seen / (row->contrast * row->contrast);
+  if (wanted < LEAST_SEEN) return 0;
+  if (2 * seen < wanted) return INFINITY;
+  return squares / seen / (row->contrast * row->contrast);
 }
 
 /* A dash that is seen, as the source of another. */
@@ -214,8 +216,8 @@ static void end_together(rc_dash_rows *rows) {
   }
 }
 
-void rc_dash_rows_choose(const rc_dashes *dashes, const rc_mask *flags, int exponent,
-                         rc_dash_rows *rows) {
+recede_status rc_dash_rows_choose(rc_context *context, const rc_dashes *dashes,
+                                  const rc_mask *flags, int exponent, rc_dash_rows *rows) {
   chooser c = {dashes, flags, &rows->ground, exponent};
   end_together(rows);
   for (int i = 0; i < rows->count; i++) {
@@ -225,6 +227,8 @@ void rc_dash_rows_choose(const rc_dashes *dashes, const rc_mask *flags, int expo
       rc_dash_laid laid = {.number = n};
       if (is_hidden(&c, row, n) && !is_to_go(&c, row, n) && choose(&c, rows, row, n, &laid))
         row->laid[row->laid_count++] = laid;
+      RC_TRY(rc_poll(context));
     }
   }
+  return RECEDE_OK;
 }

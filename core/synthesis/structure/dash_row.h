@@ -41,7 +41,7 @@ rc_box rc_dash_box(const rc_ground *ground, const rc_dash_row *row, int n, int e
                    double times_along, double times_across, double margin_px, rc_box within);
 /* Chooses what is laid into the hole, of rows that are found: dashes of a size that will do and, of
  * one that is seen in part, such that fit that. */
-void rc_dash_rows_choose(const rc_dashes *dashes, const rc_mask *flags, int exponent,
-                         rc_dash_rows *rows);
+recede_status rc_dash_rows_choose(rc_context *context, const rc_dashes *dashes,
+                                  const rc_mask *flags, int exponent, rc_dash_rows *rows);
 
 #endif

@@ -69,6 +69,7 @@ static bool is_one_of(const finder *f, const rc_dash_row *row, const rc_dash *d,
     return false;
   *n = rc_dash_number(row, t);
   double due = rc_dash_place(row, *n), period = fabs(rc_dash_place(row, *n + 1) - due);
+  if (!isfinite(due)) return false;
   if (fabs(t - due) <= (f->drifts ? OFF_WHILE_DRIFTING : OFF_PERIOD) * period) return true;
   return fabs(t - due) <= MOST_OFF_PERIOD * period &&
          rc_ground_px(&f->ground, f->exponent, d->u, d->v, &x, &y, &w) &&
@@ -276,9 +277,11 @@ static bool is_taken(const rc_dash_rows *rows, const rc_dash *d) {
 }
 
 /* The row of most dashes among those that lie in none yet. */
-static bool find_longest(const finder *f, const rc_dash_rows *rows, rc_dash_row *best) {
+static recede_status find_longest(rc_context *context, const finder *f, const rc_dash_rows *rows,
+                                  rc_dash_row *best) {
   best->seen_count = LEAST_DASHES - 1;
-  for (int i = 0; i < f->dashes.count; i++)
+  for (int i = 0; i < f->dashes.count; i++) {
+    RC_TRY(rc_poll(context));
     for (int k = i + 1; k < f->dashes.count; k++) {
       const rc_dash *p = &f->dashes.found[i], *q = &f->dashes.found[k];
       if (!p->complete || !q->complete || is_taken(rows, p) || is_taken(rows, q)) continue;
@@ -290,14 +293,15 @@ static bool find_longest(const finder *f, const rc_dash_rows *rows, rc_dash_row 
       grow(f, &row);
       if (row.seen_count > best->seen_count && find_ends(f, &row)) *best = row;
     }
-  return best->seen_count >= LEAST_DASHES;
+  }
+  return RECEDE_OK;
 }
 
 /* What is seen of one that is cut may be the rest of one of the row's: then its middle is here. */
 static bool middle_of(const rc_dash_row *row, const rc_dash *d, double *u, double *v) {
   double a = row->a, b = row->b, out = 0;
-  double length = sqrt(12 * (a * a * d->uu + 2 * a * b * d->uv + b * b * d->vv));
-  double width = sqrt(12 * (b * b * d->uu - 2 * a * b * d->uv + a * a * d->vv));
+  double length = sqrt(12 * fmax(a * a * d->uu + 2 * a * b * d->uv + b * b * d->vv, 0));
+  double width = sqrt(12 * fmax(b * b * d->uu - 2 * a * b * d->uv + a * a * d->vv, 0));
   *u = d->u, *v = d->v;
   if (d->complete) return rc_dashes_alike(row, d->length, d->a, d->b);
   if (width > MOST_WIDER * row->width || row->width > MOST_WIDER * width ||
@@ -334,11 +338,14 @@ static bool correct(const finder *f, const rc_dash_row *row, rc_ground *ground) 
   return true;
 }
 
-static void find_rows(const finder *f, rc_dash_rows *rows) {
+static recede_status find_rows(rc_context *context, const finder *f, rc_dash_rows *rows) {
   rows->ground = f->ground;
-  rows->count = 0;
-  while (rows->count < RC_MOST_DASH_ROWS && find_longest(f, rows, &rows->rows[rows->count]))
-    rows->count++;
+  for (rows->count = 0; rows->count < RC_MOST_DASH_ROWS; rows->count++) {
+    rc_dash_row *next = &rows->rows[rows->count];
+    RC_TRY(find_longest(context, f, rows, next));
+    if (next->seen_count < LEAST_DASHES) break;
+  }
+  return RECEDE_OK;
 }
 
 static int seen_in(const rc_dash_rows *rows) {
@@ -358,9 +365,8 @@ static recede_status try_horizons(rc_context *context, finder *f, rc_dash_rows *
   for (size_t i = 0; i < sizeof farther / sizeof *farther; i++) {
     f->ground = rc_ground_tilted(&said, 1 + farther[i]);
     rc_dashes_move(&seen, &said, &f->ground, &f->dashes);
-    find_rows(f, rows);
+    RC_TRY(find_rows(context, f, rows));
     if (seen_in(rows) > most) most = seen_in(rows), best = f->ground;
-    RC_TRY(rc_poll(context));
   }
   f->ground = best;
   *any = most > 0;
@@ -380,12 +386,12 @@ recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, cons
     f.drifts = i < CORRECTIONS;
     rc_release(context, mark);
     RC_TRY(rc_dashes_find(context, image, flags, &f.ground, exponent, &f.dashes));
-    find_rows(&f, rows);
+    RC_TRY(find_rows(context, &f, rows));
     any = rows->count > 0;
     if (f.drifts && any && !correct(&f, rows->rows, &f.ground)) i = CORRECTIONS - 1;
   }
   find_beside(&f, rows);
-  rc_dash_rows_choose(&f.dashes, flags, exponent, rows);
+  RC_TRY(rc_dash_rows_choose(context, &f.dashes, flags, exponent, rows));
   rc_release(context, mark);
   return rc_poll(context);
 }
