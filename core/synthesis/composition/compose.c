@@ -70,8 +70,8 @@ static bool copy_value(const composition *c, rc_copy copy, int x, int y, float *
                                          (int)rc_round(place.y + chart->y0));
   int mip = 0;
   for (; mip + 1 < c->mip_count && across * scale > MIP_AT; mip++) scale *= .5f;
-  int taps = (int)(along * scale + TAPS_ROUND);
-  taps = taps < 1 ? 1 : taps < MOST_TAPS ? taps : MOST_TAPS;
+  float wanted = along * scale + TAPS_ROUND; /* NaN where the copy leads beyond the horizon */
+  int taps = !(wanted >= 1.f) ? 1 : wanted < MOST_TAPS ? (int)wanted : MOST_TAPS;
   float steep = sqrtf(chart->lx * chart->lx + chart->ly * chart->ly), sum[3] = {0, 0, 0};
   if (chart->raised || !(steep > 0.f)) taps = 1;
   for (int i = 0; i < taps; i++) {
