@@ -154,8 +154,9 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
     RC_TRY(rc_lines_find(context, &e->images[n], &e->flags[n], n, n > from, &e->chart, e->lines,
                          &e->line_count));
   rc_dash_rows_drop_lines(dashes, e->lines, &e->line_count);
-  RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, e->lines,
-                       &e->line_count, &e->rails));
+  /* Where there are dashes it is they that repeat, not what the lines lie on. */
+  RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, !dashes->count,
+                       e->lines, &e->line_count, &e->rails));
   if (e->params->engine_boundary)
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
                             &e->line_count, &e->rails, &e->sides.boundary));

@@ -21,6 +21,9 @@
 #define FAVOUR_OF_RAILS 1.3
 #define FAVOUR_OF_LINES 1.8
 #define FAVOUR_OF_CLEAR_LINES 2.
+/* The plainer what a sure line crosses, the more it costs: a marking on asphalt 2 to 2.7 times as
+ * much. */
+#define FAVOUR_OF_SURE_LINES 4.
 /* A lattice costs tiles and old roofs .7 to 1.1 of what any copies do, stones that only lie in rows
  * .6 to 1.4, roof tiles that are all alike 1.6 and more: they keep in order by themselves. */
 #define FAVOUR_OF_LATTICE 1.3
@@ -213,6 +216,11 @@ static recede_status try_rails(rc_context *context, rc_descent *e, int first, in
   return RECEDE_OK;
 }
 
+static double favour_of(const rc_crossing *line) {
+  if (rc_crossing_is_sure(line)) return FAVOUR_OF_SURE_LINES;
+  return line->strength >= RC_CLEAR_STRENGTH ? FAVOUR_OF_CLEAR_LINES : FAVOUR_OF_LINES;
+}
+
 /* Starts with the lines locked. */
 static recede_status try_lines(rc_context *context, rc_descent *e, const starts *s, rc_pace *p,
                                rc_level *level, rc_workspace *scratch, double misfit) {
@@ -222,8 +230,7 @@ static recede_status try_lines(rc_context *context, rc_descent *e, const starts 
   RC_TRY(rc_lines_lock(context, e->lines, e->line_count, e->level_count - 1, level));
   RC_TRY(try_starts(context, e, s, p, level, scratch, &best, &own));
   own += price_of_broken_lines(e, level, &best);
-  bool clear = e->lines[0].strength >= RC_CLEAR_STRENGTH;
-  e->continue_lines = own < (clear ? FAVOUR_OF_CLEAR_LINES : FAVOUR_OF_LINES) * misfit;
+  e->continue_lines = own < favour_of(&e->lines[0]) * misfit;
   if (!e->continue_lines) RC_FREE(context, &level->locked);
   return RECEDE_OK;
 }

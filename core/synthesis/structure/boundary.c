@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "synthesis/structure/follow.h"
+#include "synthesis/structure/repeats.h"
 
 /* Stones and grass are noise to a line. So it is looked for so many levels coarser than others are,
  * where it is wide and they are small. */
@@ -143,6 +144,26 @@ static recede_status search(rc_context *context, const rc_image *images, const r
   return RECEDE_OK;
 }
 
+/* Whether both ends of a line lie so near. */
+static bool ends_within(const rc_crossing *from, const rc_crossing *line, float px) {
+  return rc_crossing_distance(from, line->ax, line->ay) < px &&
+         rc_crossing_distance(from, line->bx, line->by) < px;
+}
+
+/* Whether a clearer line that is not the same runs through the strips beside it: then the step is
+ * that line's, a marking's across a road. coarsest_px: of the finest level. */
+static bool is_beside_a_line(const rc_crossing *step, const rc_chart *chart, float apart_px,
+                             float coarsest_px, const rc_crossing *lines, int count) {
+  rc_copy direction = rc_crossing_direction(chart, step);
+  for (int i = 0; i < count; i++)
+    if (rc_crossing_is_sure(&lines[i]) && lines[i].strength > step->strength &&
+        !rc_parallel_in_plane(direction, rc_crossing_direction(chart, &lines[i])) &&
+        ends_within(step, &lines[i], (STRIP_TO_PX + 1) * coarsest_px) &&
+        !ends_within(step, &lines[i], apart_px))
+      return true;
+  return false;
+}
+
 recede_status rc_boundary_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                                int levels, int from, const rc_chart *chart,
                                rc_crossing lines[RC_MOST_LINES], int *count, rc_rails *rails,
@@ -155,6 +176,8 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
   RC_TRY(search(context, images, masks, levels, from, chart, &line, &apart_px, &found));
   rc_copy direction = found ? rc_crossing_direction(chart, &line) : (rc_copy){0, 0, 0};
   if (!found || rc_parallel_in_plane(direction, (rc_copy){rails->a, rails->b, 0})) return RECEDE_OK;
+  if (is_beside_a_line(&line, chart, apart_px, (float)(1 << (levels - 1)), lines, *count))
+    return RECEDE_OK;
   rc_boundary between = boundary_of(chart, &line);
   RC_TRY(rc_runs_on_both_sides(context, images, masks, levels, chart, rails, &between, &boards));
   if (boards) return RECEDE_OK; /* light and dark boards' ends in a row */
@@ -163,8 +186,7 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
   for (int i = 0; i < *count; i++) {
     bool repeats = false;
     if (!rc_parallel_in_plane(direction, rc_crossing_direction(chart, &lines[i]))) continue;
-    bool same = rc_crossing_distance(&line, lines[i].ax, lines[i].ay) < apart_px &&
-                rc_crossing_distance(&line, lines[i].bx, lines[i].by) < apart_px;
+    bool same = ends_within(&line, &lines[i], apart_px);
     if (!same)
       RC_TRY(rc_repeats_beside(context, images, masks, levels, chart, &lines[i], boundary,
                                lines[i].ax, lines[i].ay, &repeats));

@@ -6,12 +6,28 @@
 
 /* Signal to noise of one that the others may be parallel to. */
 #define LEAST_LEADING_STRENGTH 12.f
-#define PARALLEL .9976f    /* cosine of 4 degrees, in the plane */
+#define PARALLEL .9976f /* cosine of 4 degrees, in the plane */
+/* Stones' edges are as strong, but chance ones keep less. */
+#define SURE_STRENGTH 50.f
+#define SURE_KEPT .9f
 #define MOST_OF_CORNER .1f /* of the hole */
 
+float rc_crossing_length(const rc_crossing *c) {
+  float dx = c->bx - c->ax, dy = c->by - c->ay;
+  return sqrtf(dx * dx + dy * dy);
+}
+
+/* On which side of the line through both of its ends, and how far times its length. */
+static float side(const rc_crossing *line, float x, float y) {
+  return (x - line->ax) * (line->by - line->ay) - (y - line->ay) * (line->bx - line->ax);
+}
+
 float rc_crossing_distance(const rc_crossing *line, float x, float y) {
-  float dx = line->bx - line->ax, dy = line->by - line->ay;
-  return fabsf((x - line->ax) * dy - (y - line->ay) * dx) / sqrtf(dx * dx + dy * dy);
+  return fabsf(side(line, x, y)) / rc_crossing_length(line);
+}
+
+bool rc_crossing_is_sure(const rc_crossing *line) {
+  return line->strength >= SURE_STRENGTH && line->kept >= SURE_KEPT;
 }
 
 rc_crossing rc_crossing_coarser(rc_crossing line, int exponent) {
@@ -34,11 +50,6 @@ rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *c) {
 
 bool rc_parallel_in_plane(rc_copy p, rc_copy q) { return fabsf(p.a * q.a + p.b * q.b) > PARALLEL; }
 
-float rc_crossing_length(const rc_crossing *c) {
-  float dx = c->bx - c->ax, dy = c->by - c->ay;
-  return sqrtf(dx * dx + dy * dy);
-}
-
 void rc_crossings_keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
                                 int *count) {
   rc_copy directions[RC_MOST_LINES];
@@ -48,7 +59,8 @@ void rc_crossings_keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST
   for (int i = 0; i < *count && lines[i].strength >= LEAST_LEADING_STRENGTH; i++) {
     float sum = 0;
     for (int k = 0; k < *count; k++)
-      if (rc_parallel_in_plane(directions[i], directions[k])) sum += rc_crossing_length(&lines[k]);
+      if (rc_parallel_in_plane(directions[i], directions[k]))
+        sum += rc_crossing_length(&lines[k]) * sqrtf(fminf(lines[k].strength, RC_CLEAR_STRENGTH));
     if (sum > most) most = sum, leading = i;
   }
   for (int i = 0; i < *count && leading >= 0; i++)
@@ -66,7 +78,7 @@ void rc_crossings_keep_corners(const rc_mask *flags, rc_crossing lines[RC_MOST_L
       for (int x = box.x0; x < box.x1; x++) {
         if (!(*rc_flag(flags, x, y) & RC_TARGET)) continue;
         pixels++;
-        left += ((float)x - c->ax) * (c->by - c->ay) > ((float)y - c->ay) * (c->bx - c->ax);
+        left += side(c, (float)x, (float)y) > 0;
       }
     int lesser = left < pixels - left ? left : pixels - left;
     if ((float)lesser < MOST_OF_CORNER * (float)pixels) lines[kept++] = *c;

@@ -16,6 +16,7 @@
 typedef struct rc_crossing {
   float ax, ay, bx, by;
   float strength;  /* signal to noise of its weaker side */
+  float kept;      /* the part of its contrast that its pieces' sources have */
   float rise;      /* -1..1: how far a is a step across */
   float as_strong; /* the part of the rest of the hole's border where some line is as strong */
   float axis[3];   /* the weights of colours it was seen by */
@@ -25,6 +26,8 @@ typedef struct rc_crossing {
 float rc_crossing_length(const rc_crossing *line);
 /* Distance of (x, y) from the line, however far beyond its ends. */
 float rc_crossing_distance(const rc_crossing *line, float x, float y);
+/* It stands out, and what it is followed by looks like it all along: no chance. */
+bool rc_crossing_is_sure(const rc_crossing *line);
 /* Its direction in the plane, a unit vector. chart: of the same level. */
 rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *line);
 /* Of two such directions, within 4 degrees. */

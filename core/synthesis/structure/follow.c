@@ -179,7 +179,7 @@ bool rc_follow(const rc_seen *picture, const rc_chart *chart, bool alone, rc_cro
     for (size_t i = 0; i < sizeof splits / sizeof *splits; i++) {
       float kept = follow_both(&f, splits[i], &own_a, &own_b);
       if (kept <= most) continue;
-      most = kept, best = *line, found = true;
+      most = kept, best = *line, best.kept = kept, found = true;
     }
   if (found) *line = best;
   return found;

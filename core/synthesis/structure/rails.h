@@ -45,21 +45,16 @@ rc_copy rc_copy_on_rails(const rc_rails *rails, const rc_chart *chart, float tol
 
 /* From the lines that cross the hole or, where none does and it reaches the picture's end, from how
  * the texture beside it changes in all directions; sharpened by how alike the texture is along
- * them. *count becomes 0 where, beside the hole, it repeats. images and masks: the pyramid's
- * levels, finest first; chart: of the finest. */
+ * them. may_repeat: *count becomes 0 where, beside the hole, it repeats. images and masks: the
+ * pyramid's levels, finest first; chart: of the finest. */
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
-                            int levels, const rc_chart *chart, const rc_crossing *lines, int *count,
-                            rc_rails *rails);
+                            int levels, const rc_chart *chart, bool may_repeat,
+                            const rc_crossing *lines, int *count, rc_rails *rails);
 
 /* Whether the texture runs along the rails on both sides of the boundary, px of the finest level.
  */
 recede_status rc_runs_on_both_sides(rc_context *context, const rc_image *images,
                                     const rc_mask *masks, int levels, const rc_chart *chart,
                                     const rc_rails *rails, const rc_boundary *boundary, bool *runs);
-/* Whether the texture on one side of the boundary, px of the finest level, repeats along it: that
- * where (x, y) lies. */
-recede_status rc_repeats_beside(rc_context *context, const rc_image *images, const rc_mask *masks,
-                                int levels, const rc_chart *chart, const rc_crossing *line,
-                                const rc_boundary *boundary, float x, float y, bool *repeats);
 
 #endif

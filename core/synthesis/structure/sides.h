@@ -17,6 +17,10 @@ static inline rc_boundary rc_boundary_coarser(rc_boundary boundary, int exponent
   return boundary;
 }
 
+static inline rc_boundary rc_other_side(rc_boundary b) {
+  return (rc_boundary){-b.nx, -b.ny, -b.at};
+}
+
 /* A map of signed distances in its own px, whose first is (x0, y0); NULL where there is none. */
 typedef struct rc_regions {
   const float *distance;

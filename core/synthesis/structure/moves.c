@@ -1,0 +1,89 @@
+#include "synthesis/structure/moves.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/random.h"
+#include "base/real.h"
+#include "synthesis/structure/profile.h"
+
+#define TRIES (8 * RC_MOVES_POINTS)
+#define WIDEST_RATIO 2.f
+#define STANDS_OUT .1 /* the brightest and the darkest of all points */
+
+static bool source_at(const void *user, int x, int y, float *value) {
+  const rc_moves *m = user;
+  if (!rc_inside(m->flags->width, m->flags->height, x, y)) return false;
+  *value = rc_brightness_at(m->image, x, y);
+  return (*rc_flag(m->flags, x, y) & RC_SOURCE) != 0;
+}
+
+rc_box rc_moves_all_of(const rc_mask *flags) { return (rc_box){0, 0, flags->width, flags->height}; }
+
+rc_box rc_moves_near_hole(const rc_mask *flags) {
+  rc_box hole = rc_box_of(flags, RC_TARGET);
+  return rc_box_grown(hole, rc_longer_side(hole) / 2, flags->width, flags->height);
+}
+
+void rc_moves_set(const rc_image *image, const rc_mask *flags, rc_chart chart, rc_box box,
+                  const rc_boundary *beside, rc_moves *m) {
+  box = rc_box_common(box, rc_box_of(flags, RC_SOURCE)); /* they may be few, of a large picture */
+  *m = (rc_moves){image, flags, rc_chart_flat(chart), INFINITY, 0, {0}};
+  if (box.x1 <= box.x0 || box.y1 <= box.y0) return;
+  for (uint32_t n = 0; n < TRIES && m->count < RC_MOVES_POINTS; n++) {
+    uint64_t bits = rc_random(rc_key(0, 97, 0), n, 0, 0);
+    int x = box.x0 + (int)rc_below((uint32_t)bits, (uint32_t)(box.x1 - box.x0));
+    int y = box.y0 + (int)rc_below((uint32_t)(bits >> 32), (uint32_t)(box.y1 - box.y0));
+    float px = (float)x - chart.x0, py = (float)y - chart.y0,
+          w = 1.f + chart.lx * px + chart.ly * py;
+    if (beside && !(beside->nx * px + beside->ny * py + beside->at > 0)) continue;
+    if (*rc_flag(flags, x, y) & RC_SOURCE && w > 1 / WIDEST_RATIO && w < WIDEST_RATIO)
+      m->points[m->count++] = y * image->width + x;
+  }
+}
+
+float rc_moves_change_of(const rc_moves *m, int point, float a, float b) {
+  rc_ruler ruler = {source_at, m, 0, 0};
+  int x = m->points[point] % m->image->width, y = m->points[point] / m->image->width;
+  float there, here = rc_brightness_at(m->image, x, y);
+  rc_place place =
+      rc_copy_place(&m->chart, (rc_copy){a, b, 0}, (float)x - m->chart.x0, (float)y - m->chart.y0);
+  if (place.beyond || !(place.ratio < WIDEST_RATIO && place.ratio > 1 / WIDEST_RATIO) ||
+      !rc_ruler_sample(&ruler, place.x + m->chart.x0, place.y + m->chart.y0, &there))
+    return NAN;
+  return fminf((there - here) * (there - here), (float)m->most_change);
+}
+
+void rc_moves_look(const rc_moves *m, float a, float b, rc_change_sum *sum) {
+  for (int i = 0; i < m->count; i++) {
+    float change = rc_moves_change_of(m, i, a, b);
+    if (isnan(change)) continue;
+    sum->squares += change;
+    sum->seen++;
+  }
+}
+
+double rc_moves_mean(const rc_change_sum *sum) {
+  return sum->seen < RC_MOVES_LEAST_SEEN ? INFINITY : sum->squares / sum->seen;
+}
+
+double rc_moves_along(const rc_moves *m, float a, float b, float px) {
+  rc_change_sum sum = {0, 0};
+  rc_moves_look(m, px * a, px * b, &sum);
+  return rc_moves_mean(&sum);
+}
+
+double rc_moves_across(const rc_moves *m, float a, float b, float px) {
+  return rc_moves_along(m, -b, a, px);
+}
+
+double rc_moves_usual_change(const rc_moves *m) {
+  float values[RC_MOVES_POINTS] = {0};
+  for (int i = 0; i < m->count; i++)
+    values[i] =
+        rc_brightness_at(m->image, m->points[i] % m->image->width, m->points[i] / m->image->width);
+  qsort(values, (size_t)m->count, sizeof *values, rc_by_value);
+  int end = (int)(STANDS_OUT * m->count);
+  double all = m->count ? values[m->count - 1 - end] - values[end] : 0;
+  return all > 0 ? all * all : INFINITY;
+}
