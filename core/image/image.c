@@ -13,6 +13,11 @@ recede_status rc_mask_new(rc_context *context, int width, int height, rc_mask *m
   return RC_NEW_ZERO(context, (size_t)width * (size_t)height, &mask->data);
 }
 
+void rc_allow_sources(rc_mask *mask) {
+  for (size_t i = 0; i < (size_t)mask->width * (size_t)mask->height; i++)
+    if (mask->data[i] & RC_SOURCE) mask->data[i] |= RC_ALLOWED;
+}
+
 rc_box rc_box_of(const rc_mask *mask, int wanted) {
   rc_box box = {mask->width, mask->height, 0, 0};
   for (int y = 0; y < mask->height; y++) {

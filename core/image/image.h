@@ -29,6 +29,9 @@ recede_status rc_image_new(rc_context *context, int width, int height, int chann
 recede_status rc_mask_new(rc_context *context, int width, int height, rc_mask *mask);
 /* Around the pixels with any of these flags; all 0 where there is none. */
 rc_box rc_box_of(const rc_mask *mask, int wanted);
+/* Adds RC_ALLOWED to all sources: what is taken from them later may still be copied by what knows
+ * where it comes from. */
+void rc_allow_sources(rc_mask *mask);
 /* So many px larger to each side, inside width x height. */
 rc_box rc_box_grown(rc_box box, int px, int width, int height);
 /* What both hold; x1 <= x0 or y1 <= y0: nothing. */

@@ -26,6 +26,11 @@ typedef struct rc_chart {
   bool raised;
 } rc_chart;
 
+/* w at a px of the level: 0 and less beyond the horizon. */
+static inline float rc_chart_w(const rc_chart *chart, float x, float y) {
+  return 1.f + chart->lx * (x - chart->x0) + chart->ly * (y - chart->y0);
+}
+
 /* The same for copies within the plane, as which moves and directions are told. */
 static inline rc_chart rc_chart_flat(rc_chart chart) {
   chart.raised = false;

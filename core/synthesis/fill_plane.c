@@ -180,10 +180,6 @@ static recede_status find_dashes(rc_context *context, const rc_problem *problem,
       &chart, (double)chart.x0 + problem->origin_x - (plane->width - 1) / 2.,
       (double)chart.y0 + problem->origin_y - (plane->height - 1) / 2., plane->focal_px);
   RC_TRY(rc_dash_rows_find(context, &e->images[from], &e->flags[from], &ground, from, rows));
-  /* What is laid may be copied wherever there was a source at first. */
-  for (size_t i = 0;
-       i < (size_t)problem->flags.width * (size_t)problem->flags.height && rows->count; i++)
-    if (problem->flags.data[i] & RC_SOURCE) problem->flags.data[i] |= RC_ALLOWED;
   return rc_poll(context);
 }
 
@@ -312,6 +308,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     return rc_fail(context, RECEDE_ARGUMENT, "This machine has no kernel %d.",
                    context->host.kernel);
   RC_TRY(rc_stage(context, "tone", .05, .07));
+  rc_mask flags = problem->flags;
+  rc_allow_sources(&flags);
   rc_band band = own_scales(problem);
   if (params->engine_near && !problem->synthesis) RC_TRY(keep_near(context, problem, &band));
   rc_tone_fit(filled, &problem->flags, &band, params->engine_tone, &tone);

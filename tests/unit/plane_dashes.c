@@ -29,31 +29,15 @@ static picture draw_road(double tilt_deg) {
   return picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, road, TEXEL_PX, SLANT_DEG, tilt_deg);
 }
 
-typedef struct paint {
-  double right, all; /* pixels that are, or of those that are or should be */
-  double wrong;      /* of plain ones */
-} paint;
-
 /* In a round hole. */
 static paint painted_right(double tilt_deg, double said_deg, area box, const char *settings) {
   picture truth = draw_road(tilt_deg);
   task t = task_new(picture_copy(&truth), settings);
-  paint p = {0, 0, 0};
   t.params.slant_deg = said_deg, t.params.tilt_deg = tilt_deg;
-  for (int y = box.y0; y < box.y1; y++)
-    for (int x = box.x0; x < box.x1; x++)
-      if (hypot((2. * x + 1 - box.x0 - box.x1) / (box.x1 - box.x0),
-                (2. * y + 1 - box.y0 - box.y1) / (box.y1 - box.y0)) < 1)
-        picture_set(&t.mask, x, y, 0, 1);
+  task_round_hole(&t, box);
   task_succeeds(&t);
   task_assert_outside(&t);
-  for (int y = box.y0; y < box.y1; y++)
-    for (int x = box.x0; x < box.x1; x++) {
-      float wanted = picture_get(&truth, x, y, 0), got = picture_get(&t.result, x, y, 0);
-      if (!(picture_get(&t.mask, x, y, 0) > 0) || (wanted > .5f && wanted < .8f)) continue;
-      bool is_paint = wanted > .8f, good = fabsf(got - wanted) < .2f;
-      p.right += is_paint && good, p.all += is_paint || !good, p.wrong += !is_paint && !good;
-    }
+  paint p = task_paint(&t, &truth, box);
   task_clear(&t);
   picture_clear(&truth);
   g_test_message("%s, tilt %.0f, said %.1f, hole at %d,%d: %.0f of %.0f px", settings, tilt_deg,

@@ -188,6 +188,14 @@ static recede_job *job_of(task *t) {
   return job;
 }
 
+void task_round_hole(task *t, area a) {
+  for (int y = a.y0; y < a.y1; y++)
+    for (int x = a.x0; x < a.x1; x++)
+      if (hypot((2. * x + 1 - a.x0 - a.x1) / (a.x1 - a.x0),
+                (2. * y + 1 - a.y0 - a.y1) / (a.y1 - a.y0)) < 1)
+        picture_set(&t->mask, x, y, 0, 1);
+}
+
 static void new_result(task *t, int width, int height) {
   picture_clear(&t->result);
   t->result = picture_new(width, height, t->image.view.channels, t->image.view.type);
@@ -259,6 +267,18 @@ moments moments_of(const picture *p, const picture *mask, bool inside, area a, i
   m.mean /= m.count;
   m.deviation = sqrt(fmax(square / m.count - m.mean * m.mean, 0));
   return m;
+}
+
+paint task_paint(const task *t, const picture *truth, area a) {
+  paint p = {0, 0, 0};
+  for (int y = a.y0; y < a.y1; y++)
+    for (int x = a.x0; x < a.x1; x++) {
+      float wanted = picture_get(truth, x, y, 0), got = picture_get(&t->result, x, y, 0);
+      if (!(picture_get(&t->mask, x, y, 0) > 0) || (wanted > .5f && wanted < .8f)) continue;
+      bool is_paint = wanted > .8f, good = fabsf(got - wanted) < .2f;
+      p.right += is_paint && good, p.all += is_paint || !good, p.wrong += !is_paint && !good;
+    }
+  return p;
 }
 
 double masked_psnr(const picture *p, const picture *truth, const picture *mask) {

@@ -50,6 +50,7 @@ typedef struct task {
 task task_new(picture image, const char *settings);
 void task_set(task *t, const char *settings);
 void task_hole(task *t, area a);
+void task_round_hole(task *t, area a); /* the ellipse in it */
 /* A fill; the result starts as bytes of 0xa5. task_succeeds: which must end well. */
 void task_run(task *t);
 void task_succeeds(task *t);
@@ -64,6 +65,12 @@ typedef struct moments {
 } moments;
 /* Of channel k of the pixels of an area whose mask is set (or, inside false, is not). */
 moments moments_of(const picture *p, const picture *mask, bool inside, area a, int k);
+/* How much of the bright markings of a dark ground is there in the hole. */
+typedef struct paint {
+  double right, all; /* pixels that are, or of those that are or should be */
+  double wrong;      /* of plain ones */
+} paint;
+paint task_paint(const task *t, const picture *truth, area a);
 /* Peak signal to noise ratio of p against truth in the masked pixels, dB. */
 double masked_psnr(const picture *p, const picture *truth, const picture *mask);
 

@@ -5,9 +5,11 @@
 #include "base/memory.h"
 #include "synthesis/search/evaluate.h"
 
-/* How far to each side the texture moves in with a line: the join needs its whole width, and a
- * coarse level a pixel. More of it breaks the bricks beside a boundary. */
+/* How far to each side the texture moves in with a line, px of the finest level: the join needs its
+ * whole width and a little more, and a coarse level a pixel. More of it breaks the bricks beside a
+ * boundary. */
 #define LOCKED_PX 5.f
+#define LOCKED_BESIDE_PX 2.f
 #define LEAST_LOCKED_PX 1.f
 
 /* Nearly all that a sample counts lies so near, in px of the size that is wanted. */
@@ -15,26 +17,29 @@
 
 static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
   const rc_chart *chart = &level->chart;
-  float unit = (float)(1 << exponent), reach = fmaxf(LOCKED_PX / unit, LEAST_LOCKED_PX);
+  float unit = (float)(1 << exponent);
   rc_crossing c = rc_crossing_coarser(*line, exponent);
-  rc_copy copies[RC_LINE_PIECES];
+  rc_copy copies[RC_MOST_PIECES];
   float dx = c.bx - c.ax, dy = c.by - c.ay, square = dx * dx + dy * dy;
-  for (int k = 0; k < RC_LINE_PIECES; k++) {
-    float t = ((float)k + .5f) / RC_LINE_PIECES;
+  for (int k = 0; k < c.pieces; k++) {
+    float t = ((float)k + .5f) / (float)c.pieces;
     copies[k] = rc_copy_exact(chart, c.ax + t * dx - chart->x0, c.ay + t * dy - chart->y0,
                               c.from_x[k] - chart->x0, c.from_y[k] - chart->y0);
   }
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
       float t = (((float)x - c.ax) * dx + ((float)y - c.ay) * dy) / square;
+      float px = (float)x, py = (float)y;
+      float reach = c.reach_px[rc_crossing_is_right(&c, px, py)] * rc_chart_w(chart, px, py);
+      reach = fmaxf(fmaxf(LOCKED_PX / unit, LEAST_LOCKED_PX), reach + LOCKED_BESIDE_PX / unit);
       if (!rc_level_is_target(level, x, y) || t < -.1f || t > 1.1f ||
-          rc_crossing_distance(&c, (float)x, (float)y) > reach)
+          rc_crossing_distance(&c, px, py) > reach)
         continue;
-      int piece = (int)(fminf(fmaxf(t, 0), .999f) * RC_LINE_PIECES);
+      int piece = (int)(fminf(fmaxf(t, 0), .999f) * (float)c.pieces);
       rc_place place =
           rc_copy_place(chart, copies[piece], rc_level_x(level, x), rc_level_y(level, y));
       size_t at = rc_level_at(level, x, y), source;
-      if (!rc_place_at(level, &place, &source) || !level->room[source]) continue;
+      if (!rc_place_at(level, &place, &source) || !(level->flags[source] & RC_ALLOWED)) continue;
       level->field[at] = copies[piece];
       level->cost[at] = 0;
       level->locked[at] = 1;

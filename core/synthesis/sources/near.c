@@ -104,7 +104,6 @@ recede_status rc_keep_near(rc_context *context, const rc_mask *flags, const rc_b
   for (int y = 0; y < flags->height; y++)
     for (int x = 0; x < flags->width; x++) {
       uint8_t *flag = rc_flag(flags, x, y);
-      if (*flag & RC_SOURCE) *flag |= RC_ALLOWED;
       if (distance_to(target, x, y) > margin) *flag &= (uint8_t)~RC_SOURCE;
     }
   rc_release(context, mark);

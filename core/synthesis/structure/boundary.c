@@ -19,25 +19,45 @@
 #define STRIP_FROM_PX 1.5f
 #define STRIP_TO_PX 5.5f
 #define STRIP_LENGTH_PX 12
+#define MARKED_BESIDE_PX 1
 #define LEAST_SEEN 8
 #define LEAST_STEP 1.f
 #define POWER_STEPS 30
+
+/* The coarsest level, and the sure lines that were found before. What they reach tells nothing of
+ * the ground beside them: a road has the same on both sides of its marking. */
+typedef struct coarsest {
+  const rc_image *image;
+  const rc_mask *flags;
+  rc_chart chart;
+  rc_crossing markings[RC_MOST_LINES];
+  int marking_count;
+} coarsest;
 
 typedef struct strip {
   float mean[3];
   int seen;
 } strip;
 
+static bool is_marked(const coarsest *c, float x, float y) {
+  for (int i = 0; i < c->marking_count; i++) {
+    const rc_crossing *m = &c->markings[i];
+    float reach = m->reach_px[rc_crossing_is_right(m, x, y)] * rc_chart_w(&c->chart, x, y);
+    if (rc_crossing_distance(m, x, y) <= reach + MARKED_BESIDE_PX) return true;
+  }
+  return false;
+}
+
 /* Beside the run that leaves (x, y) along u; side -1 or 1 of u. */
-static strip look(const rc_image *image, const rc_mask *flags, float x, float y, float ux, float uy,
-                  float side) {
+static strip look(const coarsest *c, float x, float y, float ux, float uy, float side) {
+  const rc_image *image = c->image;
   strip s = {{0, 0, 0}, 0};
   for (int along = 1; along <= STRIP_LENGTH_PX; along++)
     for (float across = STRIP_FROM_PX; across <= STRIP_TO_PX; across++) {
       int px = (int)floorf(x + ux * (float)along - uy * across * side + .5f);
       int py = (int)floorf(y + uy * (float)along + ux * across * side + .5f);
       if (!rc_inside(image->width, image->height, px, py)) continue;
-      if (!(*rc_flag(flags, px, py) & RC_SOURCE)) continue;
+      if (!(*rc_flag(c->flags, px, py) & RC_SOURCE) || is_marked(c, (float)px, (float)py)) continue;
       for (int k = 0; k < image->channels; k++) s.mean[k] += rc_pixel(image, px, py)[k];
       s.seen++;
     }
@@ -46,16 +66,16 @@ static strip look(const rc_image *image, const rc_mask *flags, float x, float y,
 }
 
 /* The product of both ends' steps; 0: too little is known there. */
-static float step_across(const rc_image *image, const rc_mask *flags, const rc_crossing *c) {
+static float step_across(const coarsest *in, const rc_crossing *c) {
   float dx = c->bx - c->ax, dy = c->by - c->ay, length = sqrtf(dx * dx + dy * dy), sum = 0;
   float ux = dx / length, uy = dy / length;
-  strip a = look(image, flags, c->ax, c->ay, -ux, -uy, -1);
-  strip b = look(image, flags, c->ax, c->ay, -ux, -uy, 1);
-  strip p = look(image, flags, c->bx, c->by, ux, uy, 1);
-  strip q = look(image, flags, c->bx, c->by, ux, uy, -1);
+  strip a = look(in, c->ax, c->ay, -ux, -uy, -1);
+  strip b = look(in, c->ax, c->ay, -ux, -uy, 1);
+  strip p = look(in, c->bx, c->by, ux, uy, 1);
+  strip q = look(in, c->bx, c->by, ux, uy, -1);
   if (a.seen < LEAST_SEEN || b.seen < LEAST_SEEN || p.seen < LEAST_SEEN || q.seen < LEAST_SEEN)
     return 0;
-  for (int k = 0; k < image->channels; k++)
+  for (int k = 0; k < in->image->channels; k++)
     sum += (a.mean[k] - b.mean[k]) * (p.mean[k] - q.mean[k]);
   return sum;
 }
@@ -93,13 +113,12 @@ static void principal_axis(double covariance[3][3], float axis[3]) {
 }
 
 /* The line with the greatest step among those that go on by themselves; false: there is none. */
-static bool choose(const rc_image *coarsest, const rc_mask *flags, int coarser, const rc_seen *seen,
-                   const rc_chart *chart, float least, const rc_crossing *lines, int count,
-                   rc_crossing *best) {
+static bool choose(const coarsest *in, int coarser, const rc_seen *seen, const rc_chart *chart,
+                   float least, const rc_crossing *lines, int count, rc_crossing *best) {
   bool found = false;
   for (int i = 0; i < count; i++) {
     rc_crossing c = lines[i], there = rc_crossing_coarser(c, coarser);
-    float step = step_across(coarsest, flags, &there);
+    float step = step_across(in, &there);
     if (step < least || !rc_follow(seen, chart, true, &c)) continue;
     *best = c, least = step, found = true;
   }
@@ -112,15 +131,19 @@ static rc_boundary boundary_of(const rc_chart *chart, const rc_crossing *c) {
   return (rc_boundary){nx, ny, nx * (chart->x0 - c->ax) + ny * (chart->y0 - c->ay)};
 }
 
-/* Searches the levels for the line between two textures, px of the finest level; *apart_px: no
- * other is nearer. False: there is none. */
+/* before: lines that were found. Searches the levels for the line between two textures, px of the
+ * finest level; *apart_px: no other is nearer. False: there is none. */
 static recede_status search(rc_context *context, const rc_image *images, const rc_mask *masks,
-                            int levels, int from, const rc_chart *chart, rc_crossing *line,
-                            float *apart_px, bool *found) {
+                            int levels, int from, const rc_chart *chart, const rc_crossing *before,
+                            int before_count, rc_crossing *line, float *apart_px, bool *found) {
   int last = levels - 1, count;
+  coarsest in = {&images[last], &masks[last], rc_chart_coarser(*chart, last), .marking_count = 0};
   double covariance[3][3];
   rc_crossing lines[RC_MOST_LINES], best;
   *found = false;
+  for (int i = 0; i < before_count; i++)
+    if (rc_crossing_is_sure(&before[i]))
+      in.markings[in.marking_count++] = rc_crossing_coarser(before[i], last);
   covariance_of(&images[last], &masks[last], covariance);
   float least = LEAST_STEP * (float)(covariance[0][0] + covariance[1][1] + covariance[2][2]);
   for (int exponent = from + LEAST_COARSER;
@@ -133,8 +156,7 @@ static recede_status search(rc_context *context, const rc_image *images, const r
     principal_axis(covariance, line->axis);
     RC_TRY(rc_see(context, &images[exponent], &masks[exponent], line->axis, &seen));
     RC_TRY(rc_lines_at(context, &seen, lines, &count));
-    *found = choose(&images[last], &masks[last], last - exponent, &seen, &here, least, lines, count,
-                    &best);
+    *found = choose(&in, last - exponent, &seen, &here, least, lines, count, &best);
     rc_release(context, mark);
     if (!*found) continue;
     memcpy(best.axis, line->axis, sizeof best.axis);
@@ -150,20 +172,6 @@ static bool ends_within(const rc_crossing *from, const rc_crossing *line, float 
          rc_crossing_distance(from, line->bx, line->by) < px;
 }
 
-/* Whether a clearer line that is not the same runs through the strips beside it: then the step is
- * that line's, a marking's across a road. coarsest_px: of the finest level. */
-static bool is_beside_a_line(const rc_crossing *step, const rc_chart *chart, float apart_px,
-                             float coarsest_px, const rc_crossing *lines, int count) {
-  rc_copy direction = rc_crossing_direction(chart, step);
-  for (int i = 0; i < count; i++)
-    if (rc_crossing_is_sure(&lines[i]) && lines[i].strength > step->strength &&
-        !rc_parallel_in_plane(direction, rc_crossing_direction(chart, &lines[i])) &&
-        ends_within(step, &lines[i], (STRIP_TO_PX + 1) * coarsest_px) &&
-        !ends_within(step, &lines[i], apart_px))
-      return true;
-  return false;
-}
-
 recede_status rc_boundary_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                                int levels, int from, const rc_chart *chart,
                                rc_crossing lines[RC_MOST_LINES], int *count, rc_rails *rails,
@@ -173,11 +181,10 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
   bool found, again = false, boards;
   int kept_count = 0;
   *boundary = (rc_boundary){0, 0, 0};
-  RC_TRY(search(context, images, masks, levels, from, chart, &line, &apart_px, &found));
+  RC_TRY(
+      search(context, images, masks, levels, from, chart, lines, *count, &line, &apart_px, &found));
   rc_copy direction = found ? rc_crossing_direction(chart, &line) : (rc_copy){0, 0, 0};
   if (!found || rc_parallel_in_plane(direction, (rc_copy){rails->a, rails->b, 0})) return RECEDE_OK;
-  if (is_beside_a_line(&line, chart, apart_px, (float)(1 << (levels - 1)), lines, *count))
-    return RECEDE_OK;
   rc_boundary between = boundary_of(chart, &line);
   RC_TRY(rc_runs_on_both_sides(context, images, masks, levels, chart, rails, &between, &boards));
   if (boards) return RECEDE_OK; /* light and dark boards' ends in a row */

@@ -17,13 +17,17 @@ float rc_crossing_length(const rc_crossing *c) {
   return sqrtf(dx * dx + dy * dy);
 }
 
-/* On which side of the line through both of its ends, and how far times its length. */
+/* How far from the line through both of its ends, times its length; negative to the right. */
 static float side(const rc_crossing *line, float x, float y) {
   return (x - line->ax) * (line->by - line->ay) - (y - line->ay) * (line->bx - line->ax);
 }
 
 float rc_crossing_distance(const rc_crossing *line, float x, float y) {
   return fabsf(side(line, x, y)) / rc_crossing_length(line);
+}
+
+bool rc_crossing_is_right(const rc_crossing *line, float x, float y) {
+  return side(line, x, y) < 0;
 }
 
 bool rc_crossing_is_sure(const rc_crossing *line) {
@@ -33,7 +37,8 @@ bool rc_crossing_is_sure(const rc_crossing *line) {
 rc_crossing rc_crossing_coarser(rc_crossing line, int exponent) {
   float unit = rc_exp2((float)exponent), *ends[] = {&line.ax, &line.ay, &line.bx, &line.by};
   for (int k = 0; k < 4; k++) *ends[k] = (*ends[k] + .5f) / unit - .5f;
-  for (int k = 0; k < RC_LINE_PIECES; k++) {
+  for (int k = 0; k < 2; k++) line.reach_px[k] /= unit;
+  for (int k = 0; k < line.pieces; k++) {
     line.from_x[k] = (line.from_x[k] + .5f) / unit - .5f;
     line.from_y[k] = (line.from_y[k] + .5f) / unit - .5f;
   }

@@ -7,7 +7,7 @@
 #include "synthesis/copy.h"
 
 #define RC_MOST_LINES 8
-#define RC_LINE_PIECES 8
+#define RC_MOST_PIECES 24
 
 /* Signal to noise of what is no chance: markings and kerbs have 100 and more. */
 #define RC_CLEAR_STRENGTH 100.f
@@ -20,12 +20,17 @@ typedef struct rc_crossing {
   float rise;      /* -1..1: how far a is a step across */
   float as_strong; /* the part of the rest of the hole's border where some line is as strong */
   float axis[3];   /* the weights of colours it was seen by */
-  float from_x[RC_LINE_PIECES], from_y[RC_LINE_PIECES]; /* where each piece's middle comes from */
+  /* How far it reaches to its left and right, px where w = 1; 0 where that is not told. */
+  float reach_px[2];
+  int pieces;
+  float from_x[RC_MOST_PIECES], from_y[RC_MOST_PIECES]; /* where each piece's middle comes from */
 } rc_crossing;
 
 float rc_crossing_length(const rc_crossing *line);
 /* Distance of (x, y) from the line, however far beyond its ends. */
 float rc_crossing_distance(const rc_crossing *line, float x, float y);
+/* On which side of it, seen from a to b with y downwards. */
+bool rc_crossing_is_right(const rc_crossing *line, float x, float y);
 /* It stands out, and what it is followed by looks like it all along: no chance. */
 bool rc_crossing_is_sure(const rc_crossing *line);
 /* Its direction in the plane, a unit vector. chart: of the same level. */

@@ -1,6 +1,7 @@
 #include "synthesis/structure/follow.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "kernels/kernels.h"
@@ -17,6 +18,11 @@
 #define GOES_ON_PX 24
 #define LEAST_GOING_ON .75f
 #define LEAST_OF_CONTRAST .02f /* of its square: less is another thing's slope */
+/* How far it reaches is looked for within so many samples to each side. Its grounds may differ by
+ * so much of what stands out, and where less of that is left it ends. */
+#define REACH_SAMPLES 14
+#define MOST_OF_STEP .35f
+#define LEAST_OF_LINE .25f
 /* From piece to piece it may bend by so much. */
 #define MOST_BEND_PX 1.f
 /* The part of its contrast that must be left, in the mean over the pieces. Dotted cracks keep .8,
@@ -29,8 +35,16 @@
  * much farther away, or farther. */
 #define FARTHER_PX 10.f
 #define FARTHEST_PX 30.f
-/* Sources may be this much larger or smaller than what they fill. */
-#define WIDEST_RATIO 1.7f
+/* Sources may be this much smaller than what they fill, and so many times larger. */
+#define MOST_MAGNIFIED 1.7f
+/* Each way to follow it, until one does. Of a line that leads to the viewer sources are larger and
+ * its profile wider, and its pieces short, for far away they are long in the plane. But short ones
+ * may wobble, and thin lines far away are as wide as a blur is. */
+static const struct way {
+  float most_reduced;
+  int pieces, splits;
+  bool widens;
+} ways[] = {{1.7f, 8, 5, false}, {3.f, RC_MOST_PIECES, 9, true}, {6.f, RC_MOST_PIECES, 9, true}};
 
 /* Profiles are read across the line's direction from a to b, in the same sense on both sides. */
 typedef struct frame {
@@ -38,6 +52,7 @@ typedef struct frame {
   const rc_chart *chart;
   rc_crossing *line;
   float length;
+  float most_reduced;
   float farther_px; /* than from right beside the hole its sources lie */
 } frame;
 
@@ -94,6 +109,29 @@ static bool goes_on(const frame *f, float outwards, float x, float y, const rc_p
   return true;
 }
 
+/* How far the line reaches to each side at an end: from what stands out most in its middle on while
+ * it is not yet as the ground is, which is the same on both sides. Where two grounds meet there is
+ * no such thing. */
+static void reach(const frame *f, float outwards, float x, float y, float reach_px[2]) {
+  enum { FAR = REACH_SAMPLES };
+  float values[2 * FAR + 1], *at = values + FAR, most = 0;
+  int middle = 0;
+  for (int o = -FAR; o <= FAR; o++)
+    if (!rc_ruler_mean(&f->ruler, x, y, (float)o, outwards * RC_PROFILE_FROM_PX, outwards,
+                       RC_PROFILE_NEAR_PX, &at[o]))
+      return;
+  float left = (at[-FAR] + at[1 - FAR]) / 2, right = (at[FAR] + at[FAR - 1]) / 2;
+  float ground = (left + right) / 2;
+  for (int o = -RC_PROFILE_HALF; o <= RC_PROFILE_HALF; o++)
+    if (fabsf(at[o] - ground) > most) most = fabsf(at[o] - ground), middle = o;
+  if (fabsf(left - right) > MOST_OF_STEP * most) return;
+  for (int side = 0; side < 2; side++) {
+    int o = middle, step = side ? 1 : -1;
+    while (abs(o) < FAR && fabsf(at[o] - ground) > LEAST_OF_LINE * most) o += step;
+    if (abs(o) < FAR) reach_px[side] = fmaxf(reach_px[side], (float)(step * o));
+  }
+}
+
 /* Where the straight line's point t (0 = a, 1 = b) comes from when the line is moved along itself
  * until its point split lies just outside the hole, beyond a for what lies before it. */
 static bool straight_source(const frame *f, float split, float t, float *x, float *y) {
@@ -106,7 +144,7 @@ static bool straight_source(const frame *f, float split, float t, float *x, floa
       rc_copy_between(&flat, ax + split * dx, ay + split * dy, ax + to * dx, ay + to * dy);
   rc_place place = rc_copy_place(&flat, copy, ax + t * dx, ay + t * dy);
   *x = place.x + flat.x0, *y = place.y + flat.y0;
-  return !place.beyond && place.ratio < WIDEST_RATIO && place.ratio > 1 / WIDEST_RATIO;
+  return !place.beyond && place.ratio < f->most_reduced && place.ratio > 1 / MOST_MAGNIFIED;
 }
 
 /* Finds one piece's source near the straight one, the bend of the piece before taken over. kept:
@@ -115,9 +153,10 @@ static bool follow_piece(const frame *f, float split, int piece, const rc_profil
                          float *kept) {
   rc_profile here;
   float x, y, square = fmaxf(rc_profile_dot(own, own), 1e-12f), before = *bend,
-              half = f->length / (2 * RC_LINE_PIECES);
+              half = f->length / (float)(2 * f->line->pieces);
   int count = half < 2 ? 4 : (int)(2 * half);
-  if (!straight_source(f, split, ((float)piece + .5f) / RC_LINE_PIECES, &x, &y)) return false;
+  if (!straight_source(f, split, ((float)piece + .5f) / (float)f->line->pieces, &x, &y))
+    return false;
   *kept = LEAST_OF_PIECE;
   for (float step = -MOST_BEND_PX; step <= MOST_BEND_PX; step += PINNED_STEP_PX) {
     float across = before + step, px = x - f->ruler.uy * across, py = y + f->ruler.ux * across;
@@ -139,9 +178,10 @@ static bool follow_side(const frame *f, int first, int end, int step, const rc_p
                         float *sum) {
   float bend = 0, kept;
   for (int piece = first, group = first; piece != end; piece += step) {
-    float split = (float)(step < 0 ? group + 1 : group) / RC_LINE_PIECES;
+    float split = (float)(step < 0 ? group + 1 : group) / (float)f->line->pieces;
     if (!follow_piece(f, split, piece, own, &bend, &kept)) {
-      group = piece, bend = 0, split = (float)(step < 0 ? group + 1 : group) / RC_LINE_PIECES;
+      group = piece, bend = 0,
+      split = (float)(step < 0 ? group + 1 : group) / (float)f->line->pieces;
       if (!follow_piece(f, split, piece, own, &bend, &kept)) return false;
     }
     *sum += fmaxf(fminf(kept, 1), 0);
@@ -153,21 +193,27 @@ static bool follow_side(const frame *f, int first, int end, int step, const rc_p
  * is kept. */
 static float follow_both(const frame *f, float split, const rc_profile *own_a,
                          const rc_profile *own_b) {
-  int middle = (int)(split * RC_LINE_PIECES);
+  int middle = (int)(split * (float)f->line->pieces);
   float sum = 0;
   if (!follow_side(f, middle - 1, -1, -1, own_a, &sum) ||
-      !follow_side(f, middle, RC_LINE_PIECES, 1, own_b, &sum))
+      !follow_side(f, middle, f->line->pieces, 1, own_b, &sum))
     return 0;
-  return sum / RC_LINE_PIECES;
+  return sum / (float)f->line->pieces;
 }
 
-bool rc_follow(const rc_seen *picture, const rc_chart *chart, bool alone, rc_crossing *line) {
-  static const float splits[] = {1, 0, .5f, .25f, .75f};
+static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, bool alone,
+                           const struct way *way, rc_crossing *line) {
+  static const float splits[] = {1, 0, .5f, .25f, .75f, .125f, .375f, .625f, .875f};
   rc_profile own_a, own_b;
   float most = LEAST_KEPT;
   rc_crossing best;
   bool found = false;
-  frame f = {.ruler = {.value = source_at, .picture = picture}, .chart = chart, .line = line};
+  frame f = {.ruler = {.value = source_at, .picture = picture},
+             .chart = chart,
+             .line = line,
+             .most_reduced = way->most_reduced};
+  if (way->widens) f.ruler.chart = chart;
+  line->pieces = way->pieces;
   set_frame(&f);
   if (!pin(&f, -1, &line->ax, &line->ay, &own_a) || !pin(&f, 1, &line->bx, &line->by, &own_b))
     return false;
@@ -176,11 +222,25 @@ bool rc_follow(const rc_seen *picture, const rc_chart *chart, bool alone, rc_cro
       (!goes_on(&f, -1, line->ax, line->ay, &own_a) || !goes_on(&f, 1, line->bx, line->by, &own_b)))
     return false;
   for (; f.farther_px <= FARTHEST_PX && !found; f.farther_px += FARTHER_PX)
-    for (size_t i = 0; i < sizeof splits / sizeof *splits; i++) {
+    for (int i = 0; i < way->splits; i++) {
       float kept = follow_both(&f, splits[i], &own_a, &own_b);
       if (kept <= most) continue;
       most = kept, best = *line, best.kept = kept, found = true;
     }
-  if (found) *line = best;
-  return found;
+  if (!found) return false;
+  *line = best;
+  f.ruler.chart = chart;
+  reach(&f, -1, line->ax, line->ay, line->reach_px);
+  reach(&f, 1, line->bx, line->by, line->reach_px);
+  return true;
+}
+
+bool rc_follow(const rc_seen *picture, const rc_chart *chart, bool alone, rc_crossing *line) {
+  for (size_t n = 0; n < sizeof ways / sizeof *ways; n++) {
+    rc_crossing c = *line;
+    if (!follow_one_way(picture, chart, alone, &ways[n], &c)) continue;
+    *line = c;
+    return true;
+  }
+  return false;
 }

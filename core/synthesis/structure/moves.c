@@ -43,7 +43,7 @@ void rc_moves_set(const rc_image *image, const rc_mask *flags, rc_chart chart, r
 }
 
 float rc_moves_change_of(const rc_moves *m, int point, float a, float b) {
-  rc_ruler ruler = {source_at, m, 0, 0};
+  rc_ruler ruler = {.value = source_at, .picture = m};
   int x = m->points[point] % m->image->width, y = m->points[point] / m->image->width;
   float there, here = rc_brightness_at(m->image, x, y);
   rc_place place =

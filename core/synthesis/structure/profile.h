@@ -2,9 +2,9 @@
 #ifndef RECEDE_SYNTHESIS_STRUCTURE_PROFILE_H
 #define RECEDE_SYNTHESIS_STRUCTURE_PROFILE_H
 
-#include <stdbool.h>
+#include "synthesis/copy.h"
 
-/* So many samples, 1 px apart. */
+/* So many samples. */
 #define RC_PROFILE_HALF 3
 #define RC_PROFILE (2 * RC_PROFILE_HALF + 1)
 
@@ -12,19 +12,26 @@
 typedef struct rc_ruler {
   bool (*value)(const void *picture, int x, int y, float *value);
   const void *picture;
-  float ux, uy; /* the line's direction, a unit vector */
+  float ux, uy;          /* the line's direction, a unit vector */
+  const rc_chart *chart; /* of the same level: samples are w px apart; NULL: 1 px */
 } rc_ruler;
 
 /* The picture's brightness at (x, y), bilinear. False: not all of it can be seen. */
 bool rc_ruler_sample(const rc_ruler *ruler, float x, float y, float *value);
+
+/* How far from each other samples across lie at (x, y). */
+float rc_ruler_px(const rc_chart *chart, float x, float y);
+/* The mean, so many samples across, of count samples at (x, y) + u (from + k step). False: fewer
+ * than a third of them could be seen. */
+bool rc_ruler_mean(const rc_ruler *ruler, float x, float y, float across, float from, float step,
+                   int count, float *mean);
 
 typedef struct rc_profile {
   float mean[RC_PROFILE]; /* without their mean, */
   float tone;             /* which is this */
 } rc_profile;
 
-/* The mean of count profiles at (x, y) + u (from + k step), sampled bilinearly. False: fewer than a
- * third of them could be seen. */
+/* The mean of count profiles there. */
 bool rc_profile_mean(const rc_ruler *ruler, float x, float y, float from, float step, int count,
                      rc_profile *profile);
 float rc_profile_dot(const rc_profile *a, const rc_profile *b);
