@@ -45,6 +45,10 @@ static const struct way {
   int pieces, splits;
   bool widens;
 } ways[] = {{1.7f, 8, 5, false}, {3.f, RC_MOST_PIECES, 9, true}, {6.f, RC_MOST_PIECES, 9, true}};
+/* It does where w at one end is so many times that at the other; what lies at the horizon itself,
+ * where it is less than that (the hole has about 1), does not. */
+#define LEAST_NEARER 1.5f
+#define LEAST_W .1f
 
 /* Profiles are read across the line's direction from a to b, in the same sense on both sides. */
 typedef struct frame {
@@ -235,9 +239,15 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, bool a
   return true;
 }
 
+static bool leads_to_the_viewer(const rc_chart *chart, const rc_crossing *line) {
+  float a = rc_chart_w(chart, line->ax, line->ay), b = rc_chart_w(chart, line->bx, line->by);
+  return fminf(a, b) > LEAST_W && fmaxf(a, b) > LEAST_NEARER * fminf(a, b);
+}
+
 bool rc_follow(const rc_seen *picture, const rc_chart *chart, bool alone, rc_crossing *line) {
   for (size_t n = 0; n < sizeof ways / sizeof *ways; n++) {
     rc_crossing c = *line;
+    if (ways[n].widens && !leads_to_the_viewer(chart, line)) continue;
     if (!follow_one_way(picture, chart, alone, &ways[n], &c)) continue;
     *line = c;
     return true;
