@@ -74,5 +74,16 @@ static inline bool rc_place_pixel(const rc_level *level, const rc_place *place, 
   *pixel = level->pixels[at];
   return true;
 }
+/* The same of the copy that box pixel at has in the field. A sure line's may come from what is no
+ * source any more: a marking looks unlike all the ground beside the hole. */
+static inline bool rc_place_field_pixel(const rc_level *level, const rc_place *place, size_t at,
+                                        uint32_t *pixel) {
+  size_t source;
+  if (!level->locked || level->locked[at] != RC_LOCKED_SURELY)
+    return rc_place_pixel(level, place, pixel);
+  if (!rc_place_at(level, place, &source) || !(level->flags[source] & RC_ALLOWED)) return false;
+  *pixel = level->pixels[source];
+  return true;
+}
 
 #endif

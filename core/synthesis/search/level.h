@@ -29,6 +29,9 @@ typedef struct rc_ranges {
   float low[RC_ALL_CLASSES], high[RC_ALL_CLASSES];
 } rc_ranges;
 
+/* By a line; by one that is no chance, which may be copied from what is RC_ALLOWED alone. */
+enum { RC_LOCKED = 1, RC_LOCKED_SURELY = 2 };
+
 typedef struct rc_level {
   int width, height;
   uint32_t *pixels; /* a byte for each component; in the target the current guide */
@@ -43,7 +46,7 @@ typedef struct rc_level {
   int box_w, box_h;
   rc_copy *field;   /* box_w * box_h, row by row; NAN a = none yet */
   float *cost;      /* of the field's copies without the price of incoherence */
-  uint8_t *locked;  /* box pixels whose copy stays; NULL = none */
+  uint8_t *locked;  /* box pixels whose copy stays: RC_LOCKED or RC_LOCKED_SURELY; NULL = none */
   uint8_t *laid;    /* of the finest: box pixels of a dash, its number; or NULL */
   uint8_t *board;   /* of each pixel, modulo 256; NULL = there are none */
   uint8_t *classes; /* class of each box pixel */

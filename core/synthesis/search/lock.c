@@ -15,9 +15,26 @@
 /* Nearly all that a sample counts lies so near, in px of the size that is wanted. */
 #define SAMPLED_PX 1
 
+/* Whether what a sample there counts may be copied. */
+static bool may_be_laid(const rc_level *level, const rc_place *place) {
+  int sx, sy, reach = SAMPLED_PX;
+  if (!rc_place_px(level, place, &sx, &sy)) return false;
+  if (place->ratio > 1.f) reach = (int)(SAMPLED_PX * place->ratio);
+  if (sx < reach || sy < reach || sx + reach >= level->width || sy + reach >= level->height)
+    return false;
+  for (int y = sy - reach; y <= sy + reach; y++)
+    for (int x = sx - reach; x <= sx + reach; x++)
+      if ((level->flags[(size_t)y * (size_t)level->width + (size_t)x] & (RC_TARGET | RC_ALLOWED)) !=
+          RC_ALLOWED)
+        return false;
+  return true;
+}
+
 static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
   const rc_chart *chart = &level->chart;
   float unit = (float)(1 << exponent);
+  bool sure = rc_crossing_is_sure(line);
+  uint8_t wanted = sure ? RC_ALLOWED : RC_SOURCE;
   rc_crossing c = rc_crossing_coarser(*line, exponent);
   rc_copy copies[RC_MOST_PIECES];
   float dx = c.bx - c.ax, dy = c.by - c.ay, square = dx * dx + dy * dy;
@@ -39,10 +56,12 @@ static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
       rc_place place =
           rc_copy_place(chart, copies[piece], rc_level_x(level, x), rc_level_y(level, y));
       size_t at = rc_level_at(level, x, y), source;
-      if (!rc_place_at(level, &place, &source) || !(level->flags[source] & RC_ALLOWED)) continue;
+      if (!rc_place_at(level, &place, &source) || !(level->flags[source] & wanted) ||
+          (sure && exponent == 0 && !may_be_laid(level, &place)))
+        continue;
       level->field[at] = copies[piece];
       level->cost[at] = 0;
-      level->locked[at] = 1;
+      level->locked[at] = sure ? RC_LOCKED_SURELY : RC_LOCKED;
     }
 }
 
@@ -53,21 +72,6 @@ recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int c
   /* The strongest last: it stays whole. */
   for (int i = count - 1; i >= 0; i--) lock_line(&lines[i], exponent, level);
   return RECEDE_OK;
-}
-
-/* Whether what a sample there counts may be copied. */
-static bool may_be_laid(const rc_level *level, const rc_place *place) {
-  int sx, sy, reach = SAMPLED_PX;
-  if (!rc_place_px(level, place, &sx, &sy)) return false;
-  if (place->ratio > 1.f) reach = (int)(SAMPLED_PX * place->ratio);
-  if (sx < reach || sy < reach || sx + reach >= level->width || sy + reach >= level->height)
-    return false;
-  for (int y = sy - reach; y <= sy + reach; y++)
-    for (int x = sx - reach; x <= sx + reach; x++)
-      if ((level->flags[(size_t)y * (size_t)level->width + (size_t)x] & (RC_TARGET | RC_ALLOWED)) !=
-          RC_ALLOWED)
-        return false;
-  return true;
 }
 
 static void lay(const rc_ground *ground, const rc_dash_row *row, const rc_dash_laid *laid,

@@ -107,11 +107,12 @@ static void show(const ring *r, const uint8_t *final_weight) {
   rc_level *level = r->level;
   for (int i = 0; i < r->count; i++) {
     int x = r->pixels[i] % level->width, y = r->pixels[i] / level->width;
-    rc_copy copy = level->field[rc_level_at(level, x, y)];
+    size_t at = rc_level_at(level, x, y);
+    rc_copy copy = level->field[at];
     uint32_t pixel;
     if (isnan(copy.a)) continue;
     rc_place place = rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
-    if (!rc_place_pixel(level, &place, &pixel)) continue;
+    if (!rc_place_field_pixel(level, &place, at, &pixel)) continue;
     level->pixels[r->pixels[i]] = pixel;
     level->weight[r->pixels[i]] = final_weight[r->pixels[i]];
   }

@@ -48,18 +48,19 @@ static void weight_row(void *user, int item, int thread) {
   }
 }
 
-/* What a copy proposes for a pixel. */
+/* What the copy of box pixel at proposes for a pixel. */
 typedef struct proposal {
   rc_copy copy;
   float value[RC_COMPONENTS];
   bool valid;
 } proposal;
 
-static void propose(const rc_level *level, rc_copy copy, int x, int y, proposal *p) {
+static void propose(const rc_level *level, size_t at, int x, int y, proposal *p) {
   uint32_t pixel = 0;
+  rc_copy copy = level->field[at];
   rc_place place = rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
   p->copy = copy;
-  p->valid = rc_place_pixel(level, &place, &pixel);
+  p->valid = rc_place_field_pixel(level, &place, at, &pixel);
   for (int k = 0; k < RC_COMPONENTS; k++) p->value[k] = (float)(pixel >> 8 * k & 255);
 }
 
@@ -75,7 +76,7 @@ static void vote_pixel(const ballot *b, int x, int y) {
       float weight = b->weight[at];
       if (!(weight > 0.f) || !rc_level_same_board(level, x, y, px, py)) continue;
       if (!rc_same_copy(level->field[at], p.copy)) /* neighbours mostly agree */
-        propose(level, level->field[at], x, y, &p);
+        propose(level, at, x, y, &p);
       if (!p.valid) continue;
       for (int k = 0; k < RC_COMPONENTS; k++) sum[k] += weight * p.value[k];
       total += weight;

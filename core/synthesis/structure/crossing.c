@@ -8,7 +8,7 @@
 #define LEAST_LEADING_STRENGTH 12.f
 #define PARALLEL .9976f /* cosine of 4 degrees, in the plane */
 /* Stones' edges are as strong, but chance ones keep less. */
-#define SURE_STRENGTH 50.f
+#define SURE_STRENGTH 30.f
 #define SURE_KEPT .9f
 #define MOST_OF_CORNER .1f /* of the hole */
 

@@ -125,14 +125,15 @@ static void reach(const frame *f, float outwards, float x, float y, float reach_
                        RC_PROFILE_NEAR_PX, &at[o]))
       return;
   float left = (at[-FAR] + at[1 - FAR]) / 2, right = (at[FAR] + at[FAR - 1]) / 2;
+  float w = rc_chart_w(f->chart, x, y), unit = rc_ruler_px(f->chart, x, y) / w;
   float ground = (left + right) / 2;
   for (int o = -RC_PROFILE_HALF; o <= RC_PROFILE_HALF; o++)
     if (fabsf(at[o] - ground) > most) most = fabsf(at[o] - ground), middle = o;
-  if (fabsf(left - right) > MOST_OF_STEP * most) return;
+  if (!(w > 0) || fabsf(left - right) > MOST_OF_STEP * most) return;
   for (int side = 0; side < 2; side++) {
     int o = middle, step = side ? 1 : -1;
     while (abs(o) < FAR && fabsf(at[o] - ground) > LEAST_OF_LINE * most) o += step;
-    if (abs(o) < FAR) reach_px[side] = fmaxf(reach_px[side], (float)(step * o));
+    if (abs(o) < FAR) reach_px[side] = fmaxf(reach_px[side], (float)(step * o) * unit);
   }
 }
 
@@ -233,6 +234,7 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, bool a
     }
   if (!found) return false;
   *line = best;
+  if (!rc_crossing_is_sure(line)) return true; /* of faint ones it is not told */
   f.ruler.chart = chart;
   reach(&f, -1, line->ax, line->ay, line->reach_px);
   reach(&f, 1, line->bx, line->by, line->reach_px);

@@ -345,5 +345,5 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
   if (*count == 1 && lines->as_strong > MOST_AS_STRONG) *count = 0;
   for (int i = 0; i < *count; i++) memcpy(lines[i].axis, axis, sizeof lines[i].axis);
   rc_release(context, mark);
-  return RECEDE_OK;
+  return rc_poll(context);
 }
