@@ -6,13 +6,13 @@
 #include "synthesis/structure/moves.h"
 
 /* A texture repeats if, moved along by so many px of the coarsest level, it changes by less than
- * this part of what it does moved half as far and, if that is seen, half as far again: bricks,
- * tiles and steps .27 to .60, roofs .74 to .91, cracks .72 to 1, boards .9 and more. The same
- * points are compared: of a road, those seen far along it are fewer and others. So it must be also
- * where no point counts more than most differ by: what stands out, as a dash on a road, differs by
- * more than all the rest together. And half as far it must change by this part of what it does
- * moved a little across, .57 and more, or there is nothing that could repeat: bands that converge
- * .01. */
+ * this part of what it does moved half as far and, if that is seen, half as far again: bricks .43
+ * to .70, tiles .53 to .66, roofs .82 and more, cracks and markings .73 to 1, boards .92 and more.
+ * The same points are compared: of a road, those seen far along it are fewer and others. So it must
+ * be also where no point counts more than most differ by: what stands out, as a dash on a road,
+ * differs by more than all the rest together. And half as far it must change by this part of what
+ * it does moved a little across, .57 and more, or there is nothing that could repeat: bands that
+ * converge .01. */
 #define MOST_REPEATED .72
 #define LEAST_BETWEEN .1
 #define LEAST_PERIOD_PX 6
