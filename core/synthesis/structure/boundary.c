@@ -166,12 +166,6 @@ static recede_status search(rc_context *context, const rc_image *images, const r
   return RECEDE_OK;
 }
 
-/* Whether both ends of a line lie so near. */
-static bool ends_within(const rc_crossing *from, const rc_crossing *line, float px) {
-  return rc_crossing_distance(from, line->ax, line->ay) < px &&
-         rc_crossing_distance(from, line->bx, line->by) < px;
-}
-
 recede_status rc_boundary_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                                int levels, int from, const rc_chart *chart,
                                rc_crossing lines[RC_MOST_LINES], int *count, rc_rails *rails,
@@ -193,7 +187,8 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
   for (int i = 0; i < *count; i++) {
     bool repeats = false;
     if (!rc_parallel_in_plane(direction, rc_crossing_direction(chart, &lines[i]))) continue;
-    bool same = ends_within(&line, &lines[i], apart_px);
+    bool same = rc_crossing_distance(&line, lines[i].ax, lines[i].ay) < apart_px &&
+                rc_crossing_distance(&line, lines[i].bx, lines[i].by) < apart_px;
     if (!same)
       RC_TRY(rc_repeats_beside(context, images, masks, levels, chart, &lines[i], boundary,
                                lines[i].ax, lines[i].ay, &repeats));

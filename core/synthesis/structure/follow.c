@@ -35,7 +35,7 @@
  * much farther away, or farther. */
 #define FARTHER_PX 10.f
 #define FARTHEST_PX 30.f
-/* Sources may be this much smaller than what they fill, and so many times larger. */
+/* Sources may be this much smaller than what they fill; how much larger depends on the way. */
 #define MOST_MAGNIFIED 1.7f
 /* Each way to follow it, until one does. Of a line that leads to the viewer sources are larger and
  * its profile wider, and its pieces short, for far away they are long in the plane. But short ones
