@@ -9,6 +9,7 @@
 #include "synthesis/search/kept.h"
 #include "synthesis/search/lattice_find.h"
 #include "synthesis/search/lock.h"
+#include "synthesis/search/regular.h"
 #include "synthesis/search/search.h"
 #include "synthesis/search/start.h"
 #include "synthesis/search/trial.h"
@@ -27,6 +28,9 @@
 /* A lattice costs tiles and old roofs .7 to 1.1 of what any copies do, stones that only lie in rows
  * .6 to 1.4, roof tiles that are all alike 1.6 and more: they keep in order by themselves. */
 #define FAVOUR_OF_LATTICE 1.3
+/* What is regular costs .56 to 1.2 of what others do that go on with the wrong square or window; at
+ * an end of what is known, where little is left to copy, 1.26 and more. */
+#define FAVOUR_OF_PERIODS 1.22
 /* What comes from another board is not what this one shows again and again beside the hole. */
 #define FAVOUR_OF_BOARDS 1.25
 /* Moves along the rails are of so many px and more, nearest first, as many as whole.c looks at,
@@ -54,8 +58,8 @@ static recede_status start_once(rc_context *context, const rc_descent *e, const 
   static const int copies[] = {16, 8, 4};
   rc_search search = {.kernels = e->kernels,
                       .key = rc_key((uint64_t)e->params->seed, 99, (uint32_t)trial),
-                      .periods = e->periods,
-                      .period_count = e->period_count,
+                      .periods = e->periods.copies,
+                      .period_count = e->periods.count,
                       .anywhere = rc_effort_of(e->params)->start_tries};
   if (trial < s->first_whole) return rc_start(context, level, &search);
   return rc_start_whole(context, level, search.key, s->moves, s->move_count,
@@ -235,6 +239,32 @@ static recede_status try_lines(rc_context *context, rc_descent *e, const starts 
   return RECEDE_OK;
 }
 
+/* Starts of whole copies by the periods of what is regular, which lies flat. The level then holds
+ * the best of these and those before, *best. */
+static recede_status try_periods(rc_context *context, rc_descent *e, int first, int count,
+                                 rc_pace *p, rc_level *level, rc_workspace *scratch, rc_trial *best,
+                                 double *misfit) {
+  starts s = {first, first, first + count, NULL, 0};
+  rc_trial by_periods;
+  double own;
+  bool raised = level->chart.raised;
+  rc_ranges ranges = level->ranges;
+  RC_TRY(rc_trial_new(context, level, &by_periods));
+  RC_TRY(rc_moves_by_periods(context, &e->periods, &s.moves, &s.move_count));
+  rc_reach_periods(level, &e->periods);
+  if (e->params->surface != RECEDE_SURFACE_RAISED) level->chart.raised = false;
+  RC_TRY(try_starts(context, e, &s, p, level, scratch, &by_periods, &own));
+  if (e->line_count) own += price_of_broken_lines(e, level, &by_periods);
+  e->by_periods = own < FAVOUR_OF_PERIODS * *misfit;
+  if (e->by_periods)
+    *misfit = own, *best = by_periods;
+  else
+    level->chart.raised = raised, level->ranges = ranges;
+  e->chart.raised = level->chart.raised;
+  rc_trial_restore(level, best);
+  return RECEDE_OK;
+}
+
 /* Starts that keep to the lattice, which lies flat. */
 static recede_status try_lattice(rc_context *context, rc_descent *e, int first, int count,
                                  rc_pace *p, rc_level *level, rc_workspace *scratch,
@@ -266,14 +296,18 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   double misfit;
   rc_trial best;
   if (e->params->engine_periods)
-    RC_TRY(rc_find_periods(context, level, key, e->periods, &e->period_count, &e->repeats));
+    RC_TRY(rc_find_periods(context, level, key, &e->periods));
   if (e->params->engine_lattice)
-    RC_TRY(rc_lattice_find(context, level, e->periods, e->period_count, &e->bends, &e->lattice));
+    RC_TRY(rc_lattice_find(context, level, e->periods.copies, e->periods.count, &e->bends,
+                           &e->lattice));
+  /* What lies beside a square is another one's, and so is what lies in the next. */
+  if (e->periods.regular) rc_conditions_forget_kin(&e->conditions);
   /* Where lines cross the hole there are things that go on as a whole. But whole copies that break
    * lines fit well, and must not win over those that continue them. */
   int with_lines = e->line_count ? half : 0, on_rails = rc_runs(&e->rails) ? half : 0;
   int rails_tried = e->rails.rows ? 2 : 1;
   int in_lattice = rc_has_lattice(&e->lattice) && !on_rails && plain > 1 ? half : 0;
+  int by_periods = e->periods.regular && !in_lattice && !on_rails && plain > 1 ? half : 0;
   if (in_lattice) plain = half;
   if (on_rails && e->keep_rails) {
     bool kept;
@@ -289,15 +323,17 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
     return rc_iterate(context, e, exponent, 0, 0, iterations, &p, level, scratch);
   }
   rc_pace p = {0, work_of(plain, iterations) + work_of(with_lines, iterations) +
-                      work_of(in_lattice, iterations) +
+                      work_of(in_lattice, iterations) + work_of(by_periods, iterations) +
                       rails_tried * work_of(on_rails, iterations)};
   RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(try_starts(context, e, &by_chance, &p, level, scratch, &best, &misfit));
   if (e->line_count) misfit += price_of_broken_lines(e, level, &best);
+  if (by_periods)
+    RC_TRY(try_periods(context, e, trials, by_periods, &p, level, scratch, &best, &misfit));
   if (on_rails) rc_trial_restore(level, &best);
   if (on_rails) RC_TRY(try_rails(context, e, trials, on_rails, &p, level, scratch, misfit));
   if (in_lattice) RC_TRY(try_lattice(context, e, trials, in_lattice, &p, level, scratch, misfit));
-  if (e->line_count && !e->on_rails && !e->on_lattice)
+  if (e->line_count && !e->on_rails && !e->on_lattice && !e->by_periods)
     RC_TRY(try_lines(context, e, &along_lines, &p, level, scratch, misfit));
   if (!e->on_rails && !e->continue_lines && !e->on_lattice) rc_trial_restore(level, &best);
   return RECEDE_OK;

@@ -20,11 +20,9 @@ typedef struct rc_descent {
   rc_image images[RC_MAX_LEVELS];
   rc_mask flags[RC_MAX_LEVELS];
   rc_traits traits[RC_MAX_LEVELS];
-  rc_copy periods[RC_MOST_PERIODS]; /* px of the coarsest level */
-  int period_count;
+  rc_periods periods;               /* of the coarsest level */
   rc_lattice lattice;               /* px of the coarsest level */
   rc_bends bends;                   /* the lattice's */
-  bool repeats;                     /* as rc_find_periods says */
   rc_crossing lines[RC_MOST_LINES]; /* px of the finest level */
   int line_count;
   rc_rails rails;
@@ -32,7 +30,8 @@ typedef struct rc_descent {
   rc_conditions conditions; /* of the finest level */
   rc_sides sides;           /* of the finest level */
   bool take_beside; /* what is too far away for a level's patches is taken from beside the hole */
-  bool on_rails, on_lattice, continue_lines; /* starts that kept to them fitted well enough */
+  /* Starts that kept to them fitted well enough. */
+  bool on_rails, on_lattice, by_periods, continue_lines;
   int cut_level;       /* the coarsest where seams are led by cuts; level_count: nowhere */
   uint8_t *rest;       /* of each pixel; out: 1 where it only continues what lies beside it */
   uint64_t rest_count; /* out */

@@ -44,8 +44,8 @@ static rc_search search_of(const rc_descent *e, int exponent, int trial, int ite
                      .coherence = e->params->engine_coherence ? COHERENCE : 0.f,
                      .local_radius = rc_effort_of(e->params)->local_radius,
                      .anywhere = coarsest ? rc_effort_of(e->params)->anywhere : 0,
-                     .periods = e->periods,
-                     .period_count = coarsest && !e->on_rails ? e->period_count : 0,
+                     .periods = e->periods.copies,
+                     .period_count = coarsest && !e->on_rails ? e->periods.count : 0,
                      .period_tries = PERIOD_TRIES,
                      .rails = e->on_rails ? rc_rails_coarser(e->rails, exponent) : (rc_rails){0},
                      .rail_tolerance = coarsest ? 0.f : RAIL_TOLERANCE_PX};

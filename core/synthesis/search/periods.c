@@ -22,6 +22,12 @@
  * .7 to 1.2. Stones and lawns have up to .55, and rise by up to .72. */
 #define REPEATS .72f
 #define REPEATS_BY_RISE .85f
+/* And it is regular where two periods so far from parallel, sine of the angle, correlate and rise
+ * by so much each: drawn chess boards, hexagons, pavers, parquet and facades .6 to .98, and .75 to
+ * 1.1. Dunes have .9 and 1, but one way. */
+#define REGULAR .6f
+#define REGULAR_RISE .75f
+#define LEAST_SINE .5f
 
 typedef struct correlation {
   const rc_level *level;
@@ -33,7 +39,7 @@ typedef struct correlation {
 } correlation;
 
 typedef struct peak {
-  float value, x, y;
+  float value, rise, x, y;
 } peak;
 
 static void correlate_lag(const correlation *c, int dx, int dy, float *value) {
@@ -86,16 +92,15 @@ static float vertex(float before, float at, float after) {
   return bend < 0.f ? fminf(fmaxf(.5f * (before - after) / bend, -.5f), .5f) : 0.f;
 }
 
-/* A high correlation may be shading's alone, which drifts; so its rise is asked, too. */
-static bool tells_repetition(const correlation *c, int dx, int dy) {
+/* From the least on the way there: a high correlation may be shading's alone, which drifts. */
+static float rise_to(const correlation *c, int dx, int dy) {
   int steps = abs(dx) > dy ? abs(dx) : dy;
   float own = value_at(c, dx, dy), least = own;
   for (int i = 1; i < steps; i++) {
     float part = (float)i / (float)steps, x = part * (float)dx, y = part * (float)dy;
     least = fminf(least, value_at(c, (int)rc_round(x), (int)rc_round(y)));
   }
-  /* Beyond the largest lag nothing is known: no peak there. */
-  return abs(dx) < c->lag && dy < c->lag && (own >= REPEATS || own - least >= REPEATS_BY_RISE);
+  return own - least;
 }
 
 static int stronger_first(const void *a, const void *b) {
@@ -104,37 +109,58 @@ static int stronger_first(const void *a, const void *b) {
   return p->y != q->y ? (p->y > q->y) - (p->y < q->y) : (p->x > q->x) - (p->x < q->x);
 }
 
-static recede_status collect(rc_context *context, const correlation *c,
-                             rc_copy periods[RC_MOST_PERIODS], int *count, bool *repeats) {
+static bool is_regular(const peak *p) { return p->value >= REGULAR && p->rise >= REGULAR_RISE; }
+
+/* The two that together are shortest. */
+static void find_base(const peak *peaks, int count, rc_periods *periods) {
+  float shortest = INFINITY;
+  for (int i = 0; i < count; i++)
+    for (int j = 0; j < i; j++) {
+      const peak *p = &peaks[i], *q = &peaks[j];
+      if (!is_regular(p) || !is_regular(q)) continue;
+      float p_px = sqrtf(p->x * p->x + p->y * p->y), q_px = sqrtf(q->x * q->x + q->y * q->y);
+      if (fabsf(p->x * q->y - p->y * q->x) < LEAST_SINE * p_px * q_px || p_px + q_px >= shortest)
+        continue;
+      shortest = p_px + q_px;
+      periods->regular = true;
+      periods->base[0] = (rc_copy){p->x, p->y, 0.f}, periods->base[1] = (rc_copy){q->x, q->y, 0.f};
+    }
+}
+
+static recede_status collect(rc_context *context, const correlation *c, rc_periods *periods) {
   peak *peaks;
   int found = 0, most = (c->lag + 1) * (2 * c->lag + 1);
   RC_TRY(RC_NEW(context, most, &peaks));
   for (int dy = 0; dy <= c->lag; dy++)
     for (int dx = -c->lag; dx <= c->lag; dx++) {
       if (!is_peak(c, dx, dy)) continue;
-      *repeats = *repeats || tells_repetition(c, dx, dy);
-      float own = value_at(c, dx, dy);
-      peaks[found++] =
-          (peak){own, (float)dx + vertex(value_at(c, dx - 1, dy), own, value_at(c, dx + 1, dy)),
-                 (float)dy + vertex(value_at(c, dx, dy - 1), own, value_at(c, dx, dy + 1))};
+      /* Beyond the largest lag nothing is known: no peak there. */
+      bool inside = abs(dx) < c->lag && dy < c->lag;
+      float own = value_at(c, dx, dy), rise = inside ? rise_to(c, dx, dy) : 0;
+      periods->repeats =
+          periods->repeats || (inside && (own >= REPEATS || rise >= REPEATS_BY_RISE));
+      peaks[found++] = (peak){
+          own, rise, (float)dx + vertex(value_at(c, dx - 1, dy), own, value_at(c, dx + 1, dy)),
+          (float)dy + vertex(value_at(c, dx, dy - 1), own, value_at(c, dx, dy + 1))};
     }
   qsort(peaks, (size_t)found, sizeof *peaks, stronger_first);
-  for (int i = 0; i < found && *count + 1 < RC_MOST_PERIODS; i++) {
-    periods[(*count)++] = (rc_copy){peaks[i].x, peaks[i].y, 0.f};
-    periods[(*count)++] = (rc_copy){-peaks[i].x, -peaks[i].y, 0.f};
+  find_base(peaks, found, periods);
+  for (int i = 0; i < found && periods->count + 1 < RC_MOST_PERIODS; i++) {
+    periods->copies[periods->count++] = (rc_copy){peaks[i].x, peaks[i].y, 0.f};
+    periods->copies[periods->count++] = (rc_copy){-peaks[i].x, -peaks[i].y, 0.f};
   }
   return RECEDE_OK;
 }
 
 recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key,
-                              rc_copy periods[RC_MOST_PERIODS], int *count, bool *repeats) {
+                              rc_periods *periods) {
   size_t pixels = (size_t)level->width * (size_t)level->height;
   int sources = rc_level_all_sources(level).end;
   int third = (level->width < level->height ? level->width : level->height) / 3;
   correlation c = {.level = level, .flat = rc_chart_flat(level->chart)};
   float *trait;
   int32_t *points;
-  *count = 0, *repeats = false;
+  *periods = (rc_periods){.count = 0};
   c.lag = third < MOST_LAG_PX ? third : MOST_LAG_PX;
   if (sources < LEAST_SHARED || c.lag <= LEAST_LAG_PX) return RECEDE_OK;
   rc_block *mark = rc_mark(context);
@@ -147,7 +173,7 @@ recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64
         level->order[rc_below((uint32_t)rc_random(key, (uint32_t)i, 0, 0), (uint32_t)sources)];
   c.trait = trait, c.points = points;
   RC_TRY(rc_parallel(context, c.lag + 1, correlate_row, &c));
-  RC_TRY(collect(context, &c, periods, count, repeats));
+  RC_TRY(collect(context, &c, periods));
   rc_release(context, mark);
   return RECEDE_OK;
 }

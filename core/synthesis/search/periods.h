@@ -6,10 +6,17 @@
 
 #define RC_MOST_PERIODS 60
 
-/* Peaks of the masked correlation of the level's sources with themselves, displaced in the plane;
- * strongest first, each with its opposite. Flat copies, in this level's px. repeats: the
- * same piece twice is natural, or not seen. */
+/* Flat copies, in the px of the level that they were found at. */
+typedef struct rc_periods {
+  rc_copy copies[RC_MOST_PERIODS]; /* strongest first, each with its opposite */
+  int count;
+  bool repeats;    /* the same piece twice is natural, or not seen */
+  bool regular;    /* all there is comes again both ways, by these two: */
+  rc_copy base[2]; /* short, and far from parallel */
+} rc_periods;
+
+/* Peaks of the masked correlation of the level's sources with themselves, displaced in the plane. */
 recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key,
-                              rc_copy periods[RC_MOST_PERIODS], int *count, bool *repeats);
+                              rc_periods *periods);
 
 #endif

@@ -136,7 +136,7 @@ recede_status rc_conditions_find(rc_context *context, const rc_image *images, co
   table t = {.finest = flags, .exponent = exponent, .coarsest = levels - 1, .tone = tone};
   size_t count = (size_t)width * (size_t)height;
   float *blur;
-  *conditions = (rc_conditions){NULL, 0, 0};
+  *conditions = (rc_conditions){NULL, 0, 0, 0};
   t.unit = 1 / ((double)deviation * sqrt(tone->channels));
   rc_block *before = rc_mark(context);
   RC_TRY(RC_NEW_ZERO(context, count, &t.conditions));
@@ -152,10 +152,15 @@ recede_status rc_conditions_find(rc_context *context, const rc_image *images, co
   if (kin) RC_TRY(set_kin(context, &t, images, flags, levels, &kin));
   rc_release(context, mark);
   if (focus || kin || light)
-    *conditions = (rc_conditions){t.conditions, width, exponent};
+    *conditions = (rc_conditions){t.conditions, width, height, exponent};
   else
     rc_release(context, before);
   return rc_poll(context);
+}
+
+void rc_conditions_forget_kin(rc_conditions *conditions) {
+  for (int i = 0; i < conditions->width * conditions->height && conditions->cells; i++)
+    conditions->cells[i].nearness.unit = 0;
 }
 
 float rc_conditions_price(const rc_condition *source, const rc_condition *target) {

@@ -16,8 +16,8 @@ typedef struct rc_condition {
 
 /* A table of cells, NULL where they are all the same. */
 typedef struct rc_conditions {
-  const rc_condition *cells;
-  int width;
+  rc_condition *cells;
+  int width, height;
   int exponent; /* a cell is 2^exponent px of this level wide */
 } rc_conditions;
 
@@ -37,6 +37,8 @@ static inline const rc_condition *rc_condition_at(const rc_conditions *condition
 recede_status rc_conditions_find(rc_context *context, const rc_image *images, const rc_mask *flags,
                                  int levels, const rc_tone *tone, float deviation, bool focus,
                                  bool kin, bool light, rc_conditions *conditions);
+/* From now on nothing is foreign. */
+void rc_conditions_forget_kin(rc_conditions *conditions);
 /* What a copy costs that comes from under other conditions, in units of the texture's variance. */
 float rc_conditions_price(const rc_condition *source, const rc_condition *target);
 

@@ -1,0 +1,65 @@
+#include "synthesis/search/regular.h"
+
+#include <math.h>
+
+#include "base/memory.h"
+#include "synthesis/search/evaluate.h"
+
+/* So many periods each way. */
+#define MOST_TIMES 4
+#define SIDE (2 * MOST_TIMES + 1)
+/* A period is known to about half a px, and so is the horizon's part in it. */
+#define BESIDE_PX .7f
+#define AROUND 9
+/* A range reaches a little beyond what it is to hold, and no farther than this. */
+#define REACH_BY 1.05f
+#define WIDEST 2.f
+
+/* The n-th of SIDE * SIDE, the middle one of which moves nothing. */
+static rc_copy move_by(const rc_periods *periods, int n) {
+  float i = (float)(n % SIDE - MOST_TIMES), j = (float)(n / SIDE - MOST_TIMES);
+  const rc_copy *base = periods->base;
+  return (rc_copy){i * base[0].a + j * base[1].a, i * base[0].b + j * base[1].b, 0.f};
+}
+
+/* The ratio nearest to 1 by which a whole period is a source; 1 where there is none. */
+static float nearest_ratio(const rc_level *level, const rc_periods *periods, int x, int y) {
+  rc_chart flat = rc_chart_flat(level->chart);
+  float best = WIDEST;
+  uint32_t pixel;
+  for (int n = 0; n < SIDE * SIDE; n++) {
+    if (n == SIDE * SIDE / 2) continue;
+    rc_place place =
+        rc_copy_place(&flat, move_by(periods, n), rc_level_x(level, x), rc_level_y(level, y));
+    if (!rc_place_pixel(level, &place, &pixel)) continue;
+    float off = fmaxf(place.ratio, 1 / place.ratio);
+    if (off < fmaxf(best, 1 / best)) best = place.ratio;
+  }
+  return best == WIDEST ? 1 : best;
+}
+
+void rc_reach_periods(rc_level *level, const rc_periods *periods) {
+  for (int y = level->box.y0; y < level->box.y1; y++)
+    for (int x = level->box.x0; x < level->box.x1; x++) {
+      if (!rc_level_is_target(level, x, y)) continue;
+      int c = level->classes[rc_level_at(level, x, y)];
+      float ratio = nearest_ratio(level, periods, x, y);
+      level->ranges.low[c] = fminf(level->ranges.low[c], ratio / REACH_BY);
+      level->ranges.high[c] = fmaxf(level->ranges.high[c], ratio * REACH_BY);
+    }
+}
+
+recede_status rc_moves_by_periods(rc_context *context, const rc_periods *periods,
+                                  const rc_copy **moves, int *count) {
+  rc_copy *made;
+  *count = 0;
+  RC_TRY(RC_NEW(context, SIDE * SIDE * AROUND, &made));
+  for (int n = 0; n < SIDE * SIDE; n++) {
+    rc_copy move = move_by(periods, n);
+    for (int k = 0; k < AROUND && n != SIDE * SIDE / 2; k++)
+      made[(*count)++] = (rc_copy){move.a + BESIDE_PX * (float)(k % 3 - 1),
+                                   move.b + BESIDE_PX * (float)(k / 3 - 1), 0.f};
+  }
+  *moves = made;
+  return RECEDE_OK;
+}
