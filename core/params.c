@@ -117,6 +117,8 @@ static const recede_param_info table[] = {
     STAGE("engine-periods", engine_periods, "candidates at the texture's periods"),
     STAGE("engine-lattice", engine_lattice,
           "copy what repeats both ways by whole periods, bent as it lies"),
+    STAGE("engine-regular", engine_regular,
+          "of what comes again both ways copy anything by whole periods"),
     STAGE("engine-lines", engine_lines, "continue straight lines that cross the hole"),
     STAGE("engine-rails", engine_rails,
           "copy boards and what else runs along its lines along them"),

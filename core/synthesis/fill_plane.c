@@ -1,12 +1,13 @@
 /* Method plane: the only file that knows the order of the stages.
- * sources near -> tone -> pyramid -> sources that look alike -> lines, rails, boundary, gauge,
- * regions -> sources without spots and strangers -> tracks -> conditions -> traits -> start ->
- * (search <-> vote) per level, coarse to fine -> composition -> detail. */
+ * sources near -> tone -> pyramid -> what is regular -> sources that look alike -> lines, rails,
+ * boundary, gauge, regions -> sources without spots and strangers -> tracks -> conditions -> traits
+ * -> start -> (search <-> vote) per level, coarse to fine -> composition -> detail. */
 #include "synthesis/fill_plane.h"
 
 #include <math.h>
 
 #include "base/memory.h"
+#include "base/random.h"
 #include "image/distance.h"
 #include "image/pyramid.h"
 #include "image/tone.h"
@@ -16,6 +17,7 @@
 #include "synthesis/search/descent.h"
 #include "synthesis/search/effort.h"
 #include "synthesis/search/lock.h"
+#include "synthesis/search/regular.h"
 #include "synthesis/search/traits.h"
 #include "synthesis/sources/alike.h"
 #include "synthesis/sources/near.h"
@@ -69,28 +71,6 @@ static rc_band own_scales(const rc_problem *problem) {
     }
   band.least /= SCALES_BESIDE, band.most *= SCALES_BESIDE;
   return band;
-}
-
-/* Twice the largest distance of a target pixel from one that is none, which is known up to 255. */
-static recede_status widest(rc_context *context, const rc_mask *flags, int *width) {
-  uint8_t *depth;
-  int most = 0;
-  size_t count = (size_t)flags->width * (size_t)flags->height;
-  rc_block *mark = rc_mark(context);
-  RC_TRY(RC_NEW(context, count, &depth));
-  rc_distance_inside(flags->data, RC_TARGET, flags->width, flags->height, false, depth);
-  for (size_t i = 0; i < count; i++) most = depth[i] > most ? depth[i] : most;
-  *width = 2 * most;
-  rc_release(context, mark);
-  return RECEDE_OK;
-}
-
-static recede_status keep_near(rc_context *context, const rc_problem *problem,
-                               const rc_band *band) {
-  int width;
-  if (rc_all_is_near(&problem->flags, &problem->target)) return RECEDE_OK;
-  RC_TRY(widest(context, &problem->flags, &width));
-  return rc_keep_near(context, &problem->flags, &problem->target, band, width);
 }
 
 static recede_status build_pyramid(rc_context *context, const rc_problem *problem,
@@ -157,7 +137,7 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
   /* Where there are dashes it is they that repeat, not what the lines lie on. */
   RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, !dashes->count,
                        e->lines, &e->line_count, &e->rails));
-  if (e->params->engine_boundary)
+  if (e->params->engine_boundary && !e->regular)
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
                             &e->line_count, &e->rails, &e->sides.boundary));
   if (!e->params->engine_rails) e->rails = (rc_rails){0};
@@ -183,13 +163,21 @@ static recede_status find_dashes(rc_context *context, const rc_problem *problem,
   return rc_poll(context);
 }
 
+static recede_status find_regular(rc_context *context, const rc_problem *problem, rc_descent *e) {
+  rc_chart flat = chart_of(problem, false);
+  if (!e->params->engine_regular) return RECEDE_OK;
+  return rc_is_regular(context, e->images, e->flags, e->level_count, &flat,
+                       byte_gain(&e->images[0], &problem->flags),
+                       rc_key((uint64_t)e->params->seed, 95, 0), &e->regular);
+}
+
 /* Two textures in the hole that no line tells apart, or of which one has two edges. */
 static recede_status find_regions(rc_context *context, rc_descent *e) {
   int last = e->level_count - 1, chords;
   rc_regions regions;
   bool two;
   e->sides.px = 1;
-  if (!e->params->engine_regions || rc_runs(&e->rails)) return RECEDE_OK;
+  if (!e->params->engine_regions || e->regular || rc_runs(&e->rails)) return RECEDE_OK;
   rc_chart chart = rc_chart_coarser(e->chart, last);
   RC_TRY(
       rc_regions_find(context, &e->images[last], &e->flags[last], &chart, &regions, &two, &chords));
@@ -311,7 +299,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   rc_mask flags = problem->flags;
   rc_allow_sources(&flags);
   rc_band band = own_scales(problem);
-  if (params->engine_near && !problem->synthesis) RC_TRY(keep_near(context, problem, &band));
+  if (params->engine_near && !problem->synthesis)
+    RC_TRY(rc_keep_near(context, &problem->flags, &problem->target, &band));
   rc_tone_fit(filled, &problem->flags, &band, params->engine_tone, &tone);
   RC_TRY(rc_tone_apply(context, &tone, &problem->flags, RC_KNOWN, -1, filled));
   RC_TRY(rc_stage(context, "pyramid", .07, .1));
@@ -319,7 +308,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(build_pyramid(context, problem, filled, &e));
   RC_TRY(find_dashes(context, problem, &e, &dashes));
   RC_TRY(choose_surface(context, problem, &e, &raised));
-  if (params->engine_alike && !problem->synthesis)
+  RC_TRY(find_regular(context, problem, &e));
+  if (params->engine_alike && !problem->synthesis && !e.regular)
     RC_TRY(keep_alike(context, problem, &band, &tone, filled, pyramid, &e));
   e.gain = byte_gain(filled, &problem->flags);
   /* Again, for it is the texture's that counts; what is alike may be too little to tell. */
@@ -333,7 +323,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     RC_TRY(find_regions(context, &e));
   }
   /* After the lines: a road's own dashes tell whether what crosses the hole repeats. */
-  if (params->engine_spots && !problem->synthesis) {
+  if (params->engine_spots && !problem->synthesis && !e.regular) {
     RC_TRY(rc_drop_spots(context, &band, e.images, e.flags, e.level_count));
     RC_TRY(rc_drop_strangers(context, &band, e.images, e.flags, e.level_count));
   }
@@ -344,7 +334,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   bool frontal = problem->line.a == 0 && problem->line.b == 0;
   RC_TRY(rc_conditions_find(context, e.images, e.flags, e.level_count, &tone,
                             127 / (DEVIATIONS * e.gain), params->engine_focus,
-                            params->engine_kin && !problem->synthesis,
+                            params->engine_kin && !problem->synthesis && !e.regular,
                             params->engine_light && frontal, &e.conditions));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));

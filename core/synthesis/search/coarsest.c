@@ -296,10 +296,11 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   double misfit;
   rc_trial best;
   if (e->params->engine_periods)
-    RC_TRY(rc_find_periods(context, level, key, &e->periods));
+    RC_TRY(rc_find_periods(context, level, key, RC_PERIOD_POINTS, &e->periods));
   if (e->params->engine_lattice)
     RC_TRY(rc_lattice_find(context, level, e->periods.copies, e->periods.count, &e->bends,
                            &e->lattice));
+  if (!e->params->engine_regular) e->periods.regular = false;
   /* What lies beside a square is another one's, and so is what lies in the next. */
   if (e->periods.regular) rc_conditions_forget_kin(&e->conditions);
   /* Where lines cross the hole there are things that go on as a whole. But whole copies that break

@@ -62,7 +62,8 @@ static recede_status search_level(rc_context *context, rc_descent *e, int expone
     RC_TRY(rc_iterate(context, e, exponent, 0, 0, p.total, &p, level, &scratch));
   }
   if (is_cut(e, exponent))
-    RC_TRY(rc_cut_copies(context, e->kernels, e->params->engine_usage && !e->periods.repeats, level));
+    RC_TRY(
+        rc_cut_copies(context, e->kernels, e->params->engine_usage && !e->periods.repeats, level));
   return exponent == last_searched(e) ? rc_settle(context, e, level, &scratch) : RECEDE_OK;
 }
 

@@ -12,9 +12,8 @@
 #define MOST_LAG_PX 64
 /* Nearer ones are the texture's own correlation length. */
 #define LEAST_LAG_PX 3
-/* Points that each lag is tried at: chance then correlates .03, far below the least peak. */
-#define POINTS 1200
-#define LEAST_SHARED 300
+/* A lag that fewer of the points share tells nothing. */
+#define LEAST_SHARED .25
 #define LEAST_PEAK .12f
 /* A texture repeats by nature where it correlates so much with itself a period away, drawn bricks,
  * tiles and planks .77 to .99; so do even sand and roads, where nobody sees what comes twice. Or
@@ -34,6 +33,7 @@ typedef struct correlation {
   rc_chart flat;
   const float *trait; /* of each pixel */
   const int32_t *points;
+  int count;    /* of points */
   int lag;      /* largest */
   float *value; /* (lag + 1) rows of 2 lag + 1 */
 } correlation;
@@ -46,7 +46,7 @@ static void correlate_lag(const correlation *c, int dx, int dy, float *value) {
   const rc_level *level = c->level;
   rc_copy copy = {(float)dx, (float)dy, 0.f};
   double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < c->count; i++) {
     int x = c->points[i] % level->width, y = c->points[i] / level->width;
     rc_place place = rc_copy_place(&c->flat, copy, rc_level_x(level, x), rc_level_y(level, y));
     float sx = place.x + c->flat.x0 + .5f, sy = place.y + c->flat.y0 + .5f;
@@ -59,7 +59,8 @@ static void correlate_lag(const correlation *c, int dx, int dy, float *value) {
     n++, a += p, b += q, aa += p * p, bb += q * q, ab += p * q;
   }
   double spread = (aa - a * a / fmax(n, 1)) * (bb - b * b / fmax(n, 1));
-  *value = n >= LEAST_SHARED && spread > 0 ? (float)((ab - a * b / n) / sqrt(spread)) : 0.f;
+  *value =
+      n >= LEAST_SHARED * c->count && spread > 0 ? (float)((ab - a * b / n) / sqrt(spread)) : 0.f;
 }
 
 static void correlate_row(void *user, int dy, int thread) {
@@ -152,23 +153,23 @@ static recede_status collect(rc_context *context, const correlation *c, rc_perio
   return RECEDE_OK;
 }
 
-recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key,
+recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key, int count,
                               rc_periods *periods) {
   size_t pixels = (size_t)level->width * (size_t)level->height;
   int sources = rc_level_all_sources(level).end;
   int third = (level->width < level->height ? level->width : level->height) / 3;
-  correlation c = {.level = level, .flat = rc_chart_flat(level->chart)};
+  correlation c = {.level = level, .flat = rc_chart_flat(level->chart), .count = count};
   float *trait;
   int32_t *points;
   *periods = (rc_periods){.count = 0};
   c.lag = third < MOST_LAG_PX ? third : MOST_LAG_PX;
-  if (sources < LEAST_SHARED || c.lag <= LEAST_LAG_PX) return RECEDE_OK;
+  if (sources < LEAST_SHARED * count || c.lag <= LEAST_LAG_PX) return RECEDE_OK;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, pixels, &trait));
-  RC_TRY(RC_NEW(context, POINTS, &points));
+  RC_TRY(RC_NEW(context, count, &points));
   RC_TRY(RC_NEW(context, (c.lag + 1) * (2 * c.lag + 1), &c.value));
   for (size_t i = 0; i < pixels; i++) trait[i] = rc_level_trait(level, (int)i);
-  for (int i = 0; i < POINTS; i++)
+  for (int i = 0; i < count; i++)
     points[i] =
         level->order[rc_below((uint32_t)rc_random(key, (uint32_t)i, 0, 0), (uint32_t)sources)];
   c.trait = trait, c.points = points;

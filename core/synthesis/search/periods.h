@@ -6,6 +6,11 @@
 
 #define RC_MOST_PERIODS 60
 
+/* Each displacement is tried at so many points, or at fewer to know what is regular: chance then
+ * correlates .03 or .05, far below the least peak. */
+#define RC_PERIOD_POINTS 1200
+#define RC_REGULAR_POINTS 400
+
 /* Flat copies, in the px of the level that they were found at. */
 typedef struct rc_periods {
   rc_copy copies[RC_MOST_PERIODS]; /* strongest first, each with its opposite */
@@ -15,8 +20,9 @@ typedef struct rc_periods {
   rc_copy base[2]; /* short, and far from parallel */
 } rc_periods;
 
-/* Peaks of the masked correlation of the level's sources with themselves, displaced in the plane. */
-recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key,
+/* Peaks of the masked correlation of the level's sources with themselves, displaced in the plane.
+ * count: of points. */
+recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key, int count,
                               rc_periods *periods);
 
 #endif

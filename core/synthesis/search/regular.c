@@ -15,6 +15,23 @@
 #define REACH_BY 1.05f
 #define WIDEST 2.f
 
+recede_status rc_is_regular(rc_context *context, const rc_image *images, const rc_mask *flags,
+                            int levels, const rc_chart *chart, float gain, uint64_t key,
+                            bool *regular) {
+  rc_chart coarse = rc_chart_coarser(*chart, levels - 1);
+  rc_traits none = {0};
+  rc_periods periods;
+  rc_level level;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(rc_level_new(context, &flags[levels - 1], &coarse, &level));
+  level.sides.px = 1;
+  RC_TRY(rc_level_see(context, &images[levels - 1], &none, 1.f, gain, true, &level));
+  RC_TRY(rc_find_periods(context, &level, key, RC_REGULAR_POINTS, &periods));
+  *regular = periods.regular;
+  rc_release(context, mark);
+  return rc_poll(context);
+}
+
 /* The n-th of SIDE * SIDE, the middle one of which moves nothing. */
 static rc_copy move_by(const rc_periods *periods, int n) {
   float i = (float)(n % SIDE - MOST_TIMES), j = (float)(n / SIDE - MOST_TIMES);

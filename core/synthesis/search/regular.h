@@ -1,10 +1,16 @@
-/* What is regular, its squares or windows larger than what patches see: a start by patches goes on
- * with one square where the next is due. So whole copies are tried that move it by its periods. */
+/* What is regular, all that there is coming again both ways, needs no more than its periods. What
+ * lies beside a square of a chess board is another one's, so nothing is foreign to it; and a start
+ * by patches, which see less than a square, goes on with one where the next is due. */
 #ifndef RECEDE_SYNTHESIS_SEARCH_REGULAR_H
 #define RECEDE_SYNTHESIS_SEARCH_REGULAR_H
 
 #include "synthesis/search/periods.h"
 
+/* As rc_find_periods says of the coarsest level's sources. images and flags: the pyramid's levels,
+ * finest first; chart: the finest level's; gain: byte = value * gain + 128. */
+recede_status rc_is_regular(rc_context *context, const rc_image *images, const rc_mask *flags,
+                            int levels, const rc_chart *chart, float gain, uint64_t key,
+                            bool *regular);
 /* Widens the ranges of scale until they hold, of each target pixel, the source nearest in scale
  * that lies whole periods away. */
 void rc_reach_periods(rc_level *level, const rc_periods *periods);

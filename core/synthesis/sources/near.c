@@ -41,7 +41,7 @@ static int distance_to(const rc_box *box, int x, int y) {
   return dx > dy ? dx : dy;
 }
 
-bool rc_all_is_near(const rc_mask *flags, const rc_box *target) {
+static bool all_is_near(const rc_mask *flags, const rc_box *target) {
   uint64_t pixels = (uint64_t)flags->width * (uint64_t)flags->height, hole = 0;
   for (int y = target->y0; y < target->y1; y++)
     for (int x = target->x0; x < target->x1; x++) hole += *rc_flag(flags, x, y) & RC_TARGET ? 1 : 0;
@@ -83,9 +83,25 @@ static int margin_of(const window *v, const ring *rings, int most) {
   return most;
 }
 
+/* Twice the largest distance of a target pixel from one that is none, which is known up to 255. */
+static recede_status widest(rc_context *context, const rc_mask *flags, int *width) {
+  uint8_t *depth;
+  int most = 0;
+  size_t count = (size_t)flags->width * (size_t)flags->height;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, count, &depth));
+  rc_distance_inside(flags->data, RC_TARGET, flags->width, flags->height, false, depth);
+  for (size_t i = 0; i < count; i++) most = depth[i] > most ? depth[i] : most;
+  *width = 2 * most;
+  rc_release(context, mark);
+  return RECEDE_OK;
+}
+
 recede_status rc_keep_near(rc_context *context, const rc_mask *flags, const rc_box *target,
-                           const rc_band *band, int hole_width) {
-  int most = flags->width > flags->height ? flags->width : flags->height;
+                           const rc_band *band) {
+  int most = flags->width > flags->height ? flags->width : flags->height, hole_width;
+  if (all_is_near(flags, target)) return RECEDE_OK;
+  RC_TRY(widest(context, flags, &hole_width));
   double room = fmax(ROOM_OF_WIDTH * hole_width, RC_PATCH_RADIUS + 2);
   window v = {.flags = flags, .target = target, .band = band};
   uint8_t *distance;

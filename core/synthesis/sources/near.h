@@ -7,14 +7,10 @@
 #include "image/image.h"
 #include "image/line.h"
 
-/* The whole picture is no more than the window should be: there is nothing to take. */
-bool rc_all_is_near(const rc_mask *flags, const rc_box *target);
-
-/* Takes RC_SOURCE from pixels outside a window about target, the bounding box of RC_TARGET, whose
- * hole is hole_width px across at its widest, or more than that 510. The window is wide enough to
- * hold, if the picture does, as many places for patches of the hole's own scales (band) as a fill
- * needs. */
+/* Takes RC_SOURCE from pixels outside a window about target, the bounding box of RC_TARGET; none if
+ * the whole picture is no more than the window should be. It is wide enough to hold, if the picture
+ * does, as many places for patches of the hole's own scales (band) as a fill needs. */
 recede_status rc_keep_near(rc_context *context, const rc_mask *flags, const rc_box *target,
-                           const rc_band *band, int hole_width);
+                           const rc_band *band);
 
 #endif
