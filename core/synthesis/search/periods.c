@@ -27,6 +27,10 @@
 #define REGULAR .6f
 #define REGULAR_RISE .75f
 #define LEAST_SINE .5f
+/* And a third one, of their sum or difference, correlates by this. */
+#define CONFIRMED .4f
+/* A peak is a multiple of both that is off by no more. */
+#define MOST_OFF_PX 1.5
 
 typedef struct correlation {
   const rc_level *level;
@@ -93,13 +97,14 @@ static float vertex(float before, float at, float after) {
   return bend < 0.f ? fminf(fmaxf(.5f * (before - after) / bend, -.5f), .5f) : 0.f;
 }
 
-/* From the least on the way there: a high correlation may be shading's alone, which drifts. */
-static float rise_to(const correlation *c, int dx, int dy) {
-  int steps = abs(dx) > dy ? abs(dx) : dy;
+/* What the correlation at (dx, dy) rises by from the least on the way there from (from_x, from_y):
+ * a high one may be shading's alone, which drifts. */
+static float rise_to(const correlation *c, int from_x, int from_y, int dx, int dy) {
+  int x = dx - from_x, y = dy - from_y, steps = abs(x) > abs(y) ? abs(x) : abs(y);
   float own = value_at(c, dx, dy), least = own;
   for (int i = 1; i < steps; i++) {
-    float part = (float)i / (float)steps, x = part * (float)dx, y = part * (float)dy;
-    least = fminf(least, value_at(c, (int)rc_round(x), (int)rc_round(y)));
+    float part = (float)i / (float)steps, on_x = part * (float)x, on_y = part * (float)y;
+    least = fminf(least, value_at(c, from_x + (int)rc_round(on_x), from_y + (int)rc_round(on_y)));
   }
   return own - least;
 }
@@ -112,8 +117,27 @@ static int stronger_first(const void *a, const void *b) {
 
 static bool is_regular(const peak *p) { return p->value >= REGULAR && p->rise >= REGULAR_RISE; }
 
+/* Of stripes there are peaks all along the next one, and none between them. */
+static bool part_them(const correlation *c, const peak *p, const peak *q) {
+  int px = (int)rc_round(p->x), py = (int)rc_round(p->y);
+  int qx = (int)rc_round(q->x), qy = (int)rc_round(q->y);
+  return rise_to(c, px, py, qx, qy) >= REGULAR_RISE && rise_to(c, -px, -py, qx, qy) >= REGULAR_RISE;
+}
+
+/* Two peaks come by chance, but what they span has more: at their sum or difference. */
+static bool is_confirmed(const peak *peaks, int count, const peak *p, const peak *q) {
+  for (int n = 0; n < 4 * count; n++) {
+    const peak *at = &peaks[n / 4];
+    float by = n % 2 ? 1.f : -1.f, sign = n / 2 % 2 ? 1.f : -1.f;
+    if (at->value >= CONFIRMED && fabsf(sign * at->x - p->x - by * q->x) <= MOST_OFF_PX &&
+        fabsf(sign * at->y - p->y - by * q->y) <= MOST_OFF_PX)
+      return true;
+  }
+  return false;
+}
+
 /* The two that together are shortest. */
-static void find_base(const peak *peaks, int count, rc_periods *periods) {
+static void find_base(const correlation *c, const peak *peaks, int count, rc_periods *periods) {
   float shortest = INFINITY;
   for (int i = 0; i < count; i++)
     for (int j = 0; j < i; j++) {
@@ -122,10 +146,31 @@ static void find_base(const peak *peaks, int count, rc_periods *periods) {
       float p_px = sqrtf(p->x * p->x + p->y * p->y), q_px = sqrtf(q->x * q->x + q->y * q->y);
       if (fabsf(p->x * q->y - p->y * q->x) < LEAST_SINE * p_px * q_px || p_px + q_px >= shortest)
         continue;
+      if (!part_them(c, p, q) || !is_confirmed(peaks, count, p, q)) continue;
       shortest = p_px + q_px;
       periods->regular = true;
       periods->base[0] = (rc_copy){p->x, p->y, 0.f}, periods->base[1] = (rc_copy){q->x, q->y, 0.f};
     }
+}
+
+/* By all peaks that are near whole multiples of it: a px off each time is half a square soon. */
+static void refine_base(const peak *peaks, int count, rc_periods *periods) {
+  rc_copy *p = &periods->base[0], *q = &periods->base[1];
+  double area = (double)p->a * q->b - (double)p->b * q->a, ii = 0, ij = 0, jj = 0;
+  double ia = 0, ib = 0, ja = 0, jb = 0;
+  for (int n = 0; n < count; n++) {
+    const peak *at = &peaks[n];
+    double i = rc_round((float)((at->x * q->b - at->y * q->a) / area));
+    double j = rc_round((float)((at->y * p->a - at->x * p->b) / area));
+    if (at->value < REGULAR || fabs(at->x - i * p->a - j * q->a) > MOST_OFF_PX ||
+        fabs(at->y - i * p->b - j * q->b) > MOST_OFF_PX)
+      continue;
+    ii += i * i, ij += i * j, jj += j * j;
+    ia += i * at->x, ib += i * at->y, ja += j * at->x, jb += j * at->y;
+  }
+  double both = ii * jj - ij * ij; /* at least 1: base itself is among them */
+  *p = (rc_copy){(float)((ia * jj - ja * ij) / both), (float)((ib * jj - jb * ij) / both), 0.f};
+  *q = (rc_copy){(float)((ja * ii - ia * ij) / both), (float)((jb * ii - ib * ij) / both), 0.f};
 }
 
 static recede_status collect(rc_context *context, const correlation *c, rc_periods *periods) {
@@ -137,7 +182,7 @@ static recede_status collect(rc_context *context, const correlation *c, rc_perio
       if (!is_peak(c, dx, dy)) continue;
       /* Beyond the largest lag nothing is known: no peak there. */
       bool inside = abs(dx) < c->lag && dy < c->lag;
-      float own = value_at(c, dx, dy), rise = inside ? rise_to(c, dx, dy) : 0;
+      float own = value_at(c, dx, dy), rise = inside ? rise_to(c, 0, 0, dx, dy) : 0;
       periods->repeats =
           periods->repeats || (inside && (own >= REPEATS || rise >= REPEATS_BY_RISE));
       peaks[found++] = (peak){
@@ -145,7 +190,8 @@ static recede_status collect(rc_context *context, const correlation *c, rc_perio
           (float)dy + vertex(value_at(c, dx, dy - 1), own, value_at(c, dx, dy + 1))};
     }
   qsort(peaks, (size_t)found, sizeof *peaks, stronger_first);
-  find_base(peaks, found, periods);
+  find_base(c, peaks, found, periods);
+  if (periods->regular) refine_base(peaks, found, periods);
   for (int i = 0; i < found && periods->count + 1 < RC_MOST_PERIODS; i++) {
     periods->copies[periods->count++] = (rc_copy){peaks[i].x, peaks[i].y, 0.f};
     periods->copies[periods->count++] = (rc_copy){-peaks[i].x, -peaks[i].y, 0.f};

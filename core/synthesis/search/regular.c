@@ -8,9 +8,6 @@
 /* So many periods each way. */
 #define MOST_TIMES 4
 #define SIDE (2 * MOST_TIMES + 1)
-/* A period is known to about half a px, and so is the horizon's part in it. */
-#define BESIDE_PX .7f
-#define AROUND 9
 /* A range reaches a little beyond what it is to hold, and no farther than this. */
 #define REACH_BY 1.05f
 #define WIDEST 2.f
@@ -70,13 +67,9 @@ recede_status rc_moves_by_periods(rc_context *context, const rc_periods *periods
                                   const rc_copy **moves, int *count) {
   rc_copy *made;
   *count = 0;
-  RC_TRY(RC_NEW(context, SIDE * SIDE * AROUND, &made));
-  for (int n = 0; n < SIDE * SIDE; n++) {
-    rc_copy move = move_by(periods, n);
-    for (int k = 0; k < AROUND && n != SIDE * SIDE / 2; k++)
-      made[(*count)++] = (rc_copy){move.a + BESIDE_PX * (float)(k % 3 - 1),
-                                   move.b + BESIDE_PX * (float)(k / 3 - 1), 0.f};
-  }
+  RC_TRY(RC_NEW(context, SIDE * SIDE - 1, &made));
+  for (int n = 0; n < SIDE * SIDE; n++)
+    if (n != SIDE * SIDE / 2) made[(*count)++] = move_by(periods, n);
   *moves = made;
   return RECEDE_OK;
 }

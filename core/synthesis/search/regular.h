@@ -14,7 +14,7 @@ recede_status rc_is_regular(rc_context *context, const rc_image *images, const r
 /* Widens the ranges of scale until they hold, of each target pixel, the source nearest in scale
  * that lies whole periods away. */
 void rc_reach_periods(rc_level *level, const rc_periods *periods);
-/* Moves by whole periods, and beside them, for they are not known so exactly; the context's. */
+/* Moves by whole periods, the context's. */
 recede_status rc_moves_by_periods(rc_context *context, const rc_periods *periods,
                                   const rc_copy **moves, int *count);
 

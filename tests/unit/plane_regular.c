@@ -1,0 +1,100 @@
+/* What comes again both ways, and is larger than a patch, comes again in the hole. */
+#include <stdio.h>
+#include <math.h>
+
+#include "plane_scene.h"
+
+#define WIDTH 640
+#define HEIGHT 480
+#define TEXEL_PX 16.
+/* A pixel is right that is so near to the truth: a square is .5 brighter than the next, a window .4
+ * darker than its wall. */
+#define NEAR_TRUTH .2
+
+/* Of so many values a texel, smooth between them. */
+static double stains(double u, double v, double per_texel, int n) {
+  double x = u * per_texel, y = v * per_texel, fx = x - floor(x), fy = y - floor(y);
+  int i = (int)floor(x), j = (int)floor(y);
+  double upper = noise_at(i, j, n) * (1 - fx) + noise_at(i + 1, j, n) * fx;
+  double lower = noise_at(i, j + 1, n) * (1 - fx) + noise_at(i + 1, j + 1, n) * fx;
+  return .1 * (upper * (1 - fy) + lower * fy - .5);
+}
+
+/* Of a chess board, turned; 5 texels wide. */
+static double squares(double u, double v, int k) {
+  double across = (.94 * u - .34 * v) / 5, along = (.34 * u + .94 * v) / 5;
+  bool white = ((int)floor(across) + (int)floor(along)) & 1;
+  return (white ? .75 : .25) + .02 * k + stains(u, v, 1, 7) + stains(u, v, 4, 8);
+}
+
+/* In a rough wall: 3 texels wide of 7, 4 high of 9, each pane of its own shade. */
+static double windows(double u, double v, int k) {
+  double storey = floor(u / 9), column = floor(v / 7), up = u - 9 * storey, right = v - 7 * column;
+  double wall = .6 + .03 * k + 1.5 * stains(u, v, 2, 9) + stains(u, v, .7, 10);
+  if (up > 4 || right > 3) return wall;
+  if (up < .3 || up > 3.7 || right < .3 || right > 2.7) return .9;
+  return .15 + .08 * noise_at((int)storey, (int)column, 11) + .02 * k;
+}
+
+typedef struct scene {
+  pattern *draw;
+  double slant_deg, tilt_deg;
+  area hole;
+} scene;
+
+/* The part of the hole. */
+static double right_of(const scene *s) {
+  double right = 0, all = 0;
+  picture truth = picture_of_plane(WIDTH, HEIGHT, 3, RECEDE_U8, s->draw, TEXEL_PX, s->slant_deg,
+                                   s->tilt_deg);
+  task t = task_new(picture_copy(&truth), "quality=draft");
+  t.params.slant_deg = s->slant_deg, t.params.tilt_deg = s->tilt_deg;
+  task_round_hole(&t, s->hole);
+  task_succeeds(&t);
+  task_assert_outside(&t);
+  for (int y = s->hole.y0; y < s->hole.y1; y++)
+    for (int x = s->hole.x0; x < s->hole.x1; x++) {
+      if (!(picture_get(&t.mask, x, y, 0) > .5f)) continue;
+      float off = picture_get(&t.result, x, y, 1) - picture_get(&truth, x, y, 1);
+      all++, right += fabsf(off) < (float)NEAR_TRUTH;
+    }
+  if (g_getenv("SAVE")) {
+    static int n;
+    char name[64];
+    g_snprintf(name, sizeof name, "/tmp/n/T%02d.ppm", n++);
+    FILE *f = fopen(name, "wb");
+    fprintf(f, "P6 %d %d 255\n", WIDTH, HEIGHT);
+    for (int i = 0; i < WIDTH * HEIGHT * 3; i++) fputc((int)(255 * picture_get(&t.result, i / 3 % WIDTH, i / 3 / WIDTH, i % 3)), f);
+    fclose(f);
+  }
+  task_clear(&t);
+  picture_clear(&truth);
+  g_test_message("slant %.0f, tilt %.0f, hole at %d,%d: %.3f right", s->slant_deg, s->tilt_deg,
+                 s->hole.x0, s->hole.y0, right / all);
+  return right / all;
+}
+
+static void squares_go_on(void) {
+  static const scene scenes[] = {
+      {squares, 55, 0, {250, 200, 400, 320}},  {squares, 60, 10, {320, 220, 500, 330}},
+      {squares, 50, -15, {200, 260, 360, 360}}, {squares, 60, -8, {280, 280, 430, 380}},
+      {squares, 40, 90, {240, 180, 380, 300}}, {squares, 0, 0, {250, 160, 390, 280}},
+  };
+  for (guint i = 0; i < G_N_ELEMENTS(scenes); i++) right_of(&scenes[i]);
+}
+
+static void windows_go_on(void) {
+  static const scene scenes[] = {
+      {windows, 45, 90, {220, 160, 350, 300}}, {windows, 50, -90, {260, 200, 400, 330}},
+      {windows, 35, 85, {300, 140, 420, 270}}, {windows, 40, -95, {200, 180, 330, 300}},
+      {windows, 0, 0, {250, 160, 390, 280}},
+  };
+  for (guint i = 0; i < G_N_ELEMENTS(scenes); i++) right_of(&scenes[i]);
+}
+
+int main(int argc, char **argv) {
+  g_test_init(&argc, &argv, NULL);
+  g_test_add_func("/regular/squares", squares_go_on);
+  g_test_add_func("/regular/windows", windows_go_on);
+  return g_test_run();
+}
