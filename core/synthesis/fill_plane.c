@@ -137,7 +137,7 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
   /* Where there are dashes it is they that repeat, not what the lines lie on. */
   RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, !dashes->count,
                        e->lines, &e->line_count, &e->rails));
-  if (e->params->engine_boundary && !e->regular)
+  if (e->params->engine_boundary && !e->due)
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
                             &e->line_count, &e->rails, &e->sides.boundary));
   if (!e->params->engine_rails) e->rails = (rc_rails){0};
@@ -163,12 +163,12 @@ static recede_status find_dashes(rc_context *context, const rc_problem *problem,
   return rc_poll(context);
 }
 
-static recede_status find_regular(rc_context *context, const rc_problem *problem, rc_descent *e) {
+static recede_status find_due(rc_context *context, const rc_problem *problem, rc_descent *e) {
   rc_chart flat = chart_of(problem, false);
   if (!e->params->engine_regular) return RECEDE_OK;
-  return rc_is_regular(context, e->images, e->flags, e->level_count, &flat,
-                       byte_gain(&e->images[0], &problem->flags),
-                       rc_key((uint64_t)e->params->seed, 95, 0), &e->regular);
+  return rc_is_due(context, e->images, e->flags, e->level_count, &flat,
+                   byte_gain(&e->images[0], &problem->flags),
+                   rc_key((uint64_t)e->params->seed, 95, 0), &e->due);
 }
 
 /* Two textures in the hole that no line tells apart, or of which one has two edges. */
@@ -177,7 +177,7 @@ static recede_status find_regions(rc_context *context, rc_descent *e) {
   rc_regions regions;
   bool two;
   e->sides.px = 1;
-  if (!e->params->engine_regions || e->regular || rc_runs(&e->rails)) return RECEDE_OK;
+  if (!e->params->engine_regions || e->due || rc_runs(&e->rails)) return RECEDE_OK;
   rc_chart chart = rc_chart_coarser(e->chart, last);
   RC_TRY(
       rc_regions_find(context, &e->images[last], &e->flags[last], &chart, &regions, &two, &chords));
@@ -308,8 +308,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(build_pyramid(context, problem, filled, &e));
   RC_TRY(find_dashes(context, problem, &e, &dashes));
   RC_TRY(choose_surface(context, problem, &e, &raised));
-  RC_TRY(find_regular(context, problem, &e));
-  if (params->engine_alike && !problem->synthesis && !e.regular)
+  RC_TRY(find_due(context, problem, &e));
+  if (params->engine_alike && !problem->synthesis && !e.due)
     RC_TRY(keep_alike(context, problem, &band, &tone, filled, pyramid, &e));
   e.gain = byte_gain(filled, &problem->flags);
   /* Again, for it is the texture's that counts; what is alike may be too little to tell. */
@@ -323,7 +323,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     RC_TRY(find_regions(context, &e));
   }
   /* After the lines: a road's own dashes tell whether what crosses the hole repeats. */
-  if (params->engine_spots && !problem->synthesis && !e.regular) {
+  if (params->engine_spots && !problem->synthesis && !e.due) {
     RC_TRY(rc_drop_spots(context, &band, e.images, e.flags, e.level_count));
     RC_TRY(rc_drop_strangers(context, &band, e.images, e.flags, e.level_count));
   }
@@ -334,7 +334,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   bool frontal = problem->line.a == 0 && problem->line.b == 0;
   RC_TRY(rc_conditions_find(context, e.images, e.flags, e.level_count, &tone,
                             127 / (DEVIATIONS * e.gain), params->engine_focus,
-                            params->engine_kin && !problem->synthesis && !e.regular,
+                            params->engine_kin && !problem->synthesis && !e.due,
                             params->engine_light && frontal, &e.conditions));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));

@@ -211,7 +211,8 @@ static void boards_run(void) {
   boards_made raised = fill_boards(boards, 40, hole, "quality=draft surface=raised");
   g_assert_cmpfloat(flat.joints, >, .85);
   g_assert_cmpfloat(raised.joints, >, .85);
-  boards_made free = fill_boards(boards, 40, hole, "quality=draft surface=flat engine-rails=0");
+  boards_made free =
+      fill_boards(boards, 40, hole, "quality=draft surface=flat engine-rails=0 engine-regular=0");
   g_assert_cmpfloat(flat.joints, >, free.joints + .1);
 }
 

@@ -300,9 +300,9 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   if (e->params->engine_lattice)
     RC_TRY(rc_lattice_find(context, level, e->periods.copies, e->periods.count, &e->bends,
                            &e->lattice));
-  if (!e->params->engine_regular) e->periods.regular = false;
+  if (!e->params->engine_regular) e->periods.regular = e->periods.due = false;
   /* What lies beside a square is another one's, and so is what lies in the next. */
-  if (e->periods.regular) rc_conditions_forget_kin(&e->conditions);
+  if (e->periods.due) rc_conditions_forget_kin(&e->conditions);
   /* Where lines cross the hole there are things that go on as a whole. But whole copies that break
    * lines fit well, and must not win over those that continue them. */
   int with_lines = e->line_count ? half : 0, on_rails = rc_runs(&e->rails) ? half : 0;

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/real.h"
+#include "synthesis/search/evaluate.h"
 
 /* Lags up to this many px at the coarsest level, and no more than a third of the picture there. */
 #define MOST_LAG_PX 64
@@ -27,6 +28,11 @@
 #define REGULAR .6f
 #define REGULAR_RISE .75f
 #define LEAST_SINE .5f
+/* Of what is smaller patches see more than one. */
+#define LEAST_DUE_PX 7.f
+#define BESIDE_PX 4
+/* What is due is off by .1 to 1 of the variance, bare ground among heaps by 2. */
+#define MOST_DUE_OFF 1.2
 /* And a third one, of their sum or difference, correlates by this. */
 #define CONFIRMED .4f
 /* A peak is a multiple of both that is off by no more. */
@@ -46,10 +52,23 @@ typedef struct peak {
   float value, rise, x, y;
 } peak;
 
+typedef struct sums {
+  double n, a, b, aa, bb, ab;
+} sums;
+
+static void add_pair(sums *s, double a, double b) {
+  s->n++, s->a += a, s->b += b, s->aa += a * a, s->bb += b * b, s->ab += a * b;
+}
+
+static double correlation_of(const sums *s) {
+  double spread = (s->aa - s->a * s->a / s->n) * (s->bb - s->b * s->b / s->n);
+  return s->n > 0 && spread > 0 ? (s->ab - s->a * s->b / s->n) / sqrt(spread) : 0;
+}
+
 static void correlate_lag(const correlation *c, int dx, int dy, float *value) {
   const rc_level *level = c->level;
   rc_copy copy = {(float)dx, (float)dy, 0.f};
-  double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+  sums s = {0, 0, 0, 0, 0, 0};
   for (int i = 0; i < c->count; i++) {
     int x = c->points[i] % level->width, y = c->points[i] / level->width;
     rc_place place = rc_copy_place(&c->flat, copy, rc_level_x(level, x), rc_level_y(level, y));
@@ -59,12 +78,9 @@ static void correlate_lag(const correlation *c, int dx, int dy, float *value) {
       continue;
     size_t at = (size_t)(int)sy * (size_t)level->width + (size_t)(int)sx;
     if (!level->room[at]) continue;
-    double p = c->trait[c->points[i]], q = c->trait[at];
-    n++, a += p, b += q, aa += p * p, bb += q * q, ab += p * q;
+    add_pair(&s, (double)c->trait[c->points[i]], (double)c->trait[at]);
   }
-  double spread = (aa - a * a / fmax(n, 1)) * (bb - b * b / fmax(n, 1));
-  *value =
-      n >= LEAST_SHARED * c->count && spread > 0 ? (float)((ab - a * b / n) / sqrt(spread)) : 0.f;
+  *value = s.n >= LEAST_SHARED * c->count ? (float)correlation_of(&s) : 0.f;
 }
 
 static void correlate_row(void *user, int dy, int thread) {
@@ -149,8 +165,36 @@ static void find_base(const correlation *c, const peak *peaks, int count, rc_per
       if (!part_them(c, p, q) || !is_confirmed(peaks, count, p, q)) continue;
       shortest = p_px + q_px;
       periods->regular = true;
+      periods->due = fminf(p_px, q_px) >= LEAST_DUE_PX;
       periods->base[0] = (rc_copy){p->x, p->y, 0.f}, periods->base[1] = (rc_copy){q->x, q->y, 0.f};
     }
+}
+
+static double variance_of(const correlation *c) {
+  sums s = {0, 0, 0, 0, 0, 0};
+  for (int i = 0; i < c->count; i++) add_pair(&s, (double)c->trait[c->points[i]], 0);
+  return (s.aa - s.a * s.a / s.n) / s.n;
+}
+
+/* Heaps that lie in rows, but not around the hole, are not due there: sources beside its box must
+ * be like what is one period off, by what all vary by. */
+static bool holds_beside(const correlation *c, const rc_periods *periods) {
+  const rc_level *level = c->level;
+  double off = 0, pairs = 0;
+  for (int y = level->box.y0 - BESIDE_PX; y < level->box.y1 + BESIDE_PX; y++)
+    for (int x = level->box.x0 - BESIDE_PX; x < level->box.x1 + BESIDE_PX; x++) {
+      if (!rc_inside(level->width, level->height, x, y)) continue;
+      size_t at = (size_t)y * (size_t)level->width + (size_t)x, to;
+      for (int n = 0; n < 4 && level->room[at]; n++) {
+        float sign = n % 2 ? 1.f : -1.f;
+        rc_copy move = {sign * periods->base[n / 2].a, sign * periods->base[n / 2].b, 0.f};
+        rc_place place = rc_copy_place(&c->flat, move, rc_level_x(level, x), rc_level_y(level, y));
+        if (!rc_place_at(level, &place, &to) || !level->room[to]) continue;
+        double d = (double)c->trait[at] - (double)c->trait[to];
+        off += d * d, pairs++;
+      }
+    }
+  return pairs > 0 && off / pairs <= MOST_DUE_OFF * variance_of(c);
 }
 
 /* By all peaks that are near whole multiples of it: a px off each time is half a square soon. */
@@ -192,6 +236,7 @@ static recede_status collect(rc_context *context, const correlation *c, rc_perio
   qsort(peaks, (size_t)found, sizeof *peaks, stronger_first);
   find_base(c, peaks, found, periods);
   if (periods->regular) refine_base(peaks, found, periods);
+  periods->due = periods->due && holds_beside(c, periods);
   for (int i = 0; i < found && periods->count + 1 < RC_MOST_PERIODS; i++) {
     periods->copies[periods->count++] = (rc_copy){peaks[i].x, peaks[i].y, 0.f};
     periods->copies[periods->count++] = (rc_copy){-peaks[i].x, -peaks[i].y, 0.f};

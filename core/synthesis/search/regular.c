@@ -12,9 +12,8 @@
 #define REACH_BY 1.05f
 #define WIDEST 2.f
 
-recede_status rc_is_regular(rc_context *context, const rc_image *images, const rc_mask *flags,
-                            int levels, const rc_chart *chart, float gain, uint64_t key,
-                            bool *regular) {
+recede_status rc_is_due(rc_context *context, const rc_image *images, const rc_mask *flags,
+                        int levels, const rc_chart *chart, float gain, uint64_t key, bool *due) {
   rc_chart coarse = rc_chart_coarser(*chart, levels - 1);
   rc_traits none = {0};
   rc_periods periods;
@@ -24,7 +23,7 @@ recede_status rc_is_regular(rc_context *context, const rc_image *images, const r
   level.sides.px = 1;
   RC_TRY(rc_level_see(context, &images[levels - 1], &none, 1.f, gain, true, &level));
   RC_TRY(rc_find_periods(context, &level, key, RC_REGULAR_POINTS, &periods));
-  *regular = periods.regular;
+  *due = periods.due;
   rc_release(context, mark);
   return rc_poll(context);
 }

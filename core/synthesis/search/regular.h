@@ -8,9 +8,8 @@
 
 /* As rc_find_periods says of the coarsest level's sources. images and flags: the pyramid's levels,
  * finest first; chart: the finest level's; gain: byte = value * gain + 128. */
-recede_status rc_is_regular(rc_context *context, const rc_image *images, const rc_mask *flags,
-                            int levels, const rc_chart *chart, float gain, uint64_t key,
-                            bool *regular);
+recede_status rc_is_due(rc_context *context, const rc_image *images, const rc_mask *flags,
+                        int levels, const rc_chart *chart, float gain, uint64_t key, bool *due);
 /* Widens the ranges of scale until they hold, of each target pixel, the source nearest in scale
  * that lies whole periods away. */
 void rc_reach_periods(rc_level *level, const rc_periods *periods);
