@@ -247,7 +247,7 @@ static void boards_run_out_of_the_picture(void) {
   area right = {200, 80, WIDTH, 160};
   for (int slant_deg = 30; slant_deg <= 40; slant_deg += 10) {
     boards_made on_rails = fill_boards(boards, slant_deg, right, "quality=draft");
-    const char *off = "quality=draft engine-rails=0 engine-cuts=0";
+    const char *off = "quality=draft engine-rails=0 engine-cuts=0 engine-regular=0";
     boards_made free = fill_boards(boards, slant_deg, right, off);
     g_assert_cmpfloat(on_rails.joints, >, .95);
     g_assert_cmpfloat(on_rails.joints, >, free.joints + .15);
