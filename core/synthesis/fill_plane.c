@@ -165,7 +165,11 @@ static recede_status find_dashes(rc_context *context, const rc_problem *problem,
 
 static recede_status find_due(rc_context *context, const rc_problem *problem, rc_descent *e) {
   rc_chart flat = chart_of(problem, false);
-  if (!e->params->engine_regular) return RECEDE_OK;
+  const recede_params *params = e->params;
+  /* Moves by periods lie flat. */
+  if (!params->engine_regular || !params->engine_periods ||
+      params->surface == RECEDE_SURFACE_RAISED)
+    return RECEDE_OK;
   return rc_is_due(context, e->images, e->flags, e->level_count, &flat,
                    byte_gain(&e->images[0], &problem->flags),
                    rc_key((uint64_t)e->params->seed, 95, 0), &e->due);

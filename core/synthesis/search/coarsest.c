@@ -252,7 +252,7 @@ static recede_status try_periods(rc_context *context, rc_descent *e, int first, 
   RC_TRY(rc_trial_new(context, level, &by_periods));
   RC_TRY(rc_moves_by_periods(context, &e->periods, &s.moves, &s.move_count));
   rc_reach_periods(level, &e->periods);
-  if (e->params->surface != RECEDE_SURFACE_RAISED) level->chart.raised = false;
+  level->chart.raised = false;
   RC_TRY(try_starts(context, e, &s, p, level, scratch, &by_periods, &own));
   if (e->line_count) own += price_of_broken_lines(e, level, &by_periods);
   e->by_periods = own < FAVOUR_OF_PERIODS * *misfit;
@@ -300,7 +300,8 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   if (e->params->engine_lattice)
     RC_TRY(rc_lattice_find(context, level, e->periods.copies, e->periods.count, &e->bends,
                            &e->lattice));
-  if (!e->params->engine_regular) e->periods.regular = e->periods.due = false;
+  if (!e->params->engine_regular || e->params->surface == RECEDE_SURFACE_RAISED)
+    e->periods.regular = e->periods.due = false;
   /* What lies beside a square is another one's, and so is what lies in the next. */
   if (e->periods.due) rc_conditions_forget_kin(&e->conditions);
   /* Where lines cross the hole there are things that go on as a whole. But whole copies that break

@@ -56,7 +56,7 @@ static recede_status search_level(rc_context *context, rc_descent *e, int expone
   } else {
     rc_pace p = {0, rc_iterations_at(e, exponent)};
     if (e->on_rails) RC_TRY(rc_boards_mark(context, &e->rails, exponent, level));
-    if (e->take_beside && !e->on_rails && !e->on_lattice)
+    if (e->take_beside && !e->on_rails && !e->on_lattice && !e->by_periods)
       RC_TRY(rc_take_beside(context, level,
                             rc_key((uint64_t)e->params->seed, 97, (uint32_t)exponent), true));
     RC_TRY(rc_iterate(context, e, exponent, 0, 0, p.total, &p, level, &scratch));
@@ -73,7 +73,7 @@ static recede_status run_level(rc_context *context, rc_descent *e, int exponent,
   if (e->continue_lines && !coarsest)
     RC_TRY(rc_lines_lock(context, e->lines, e->line_count, exponent, level));
   if (exponent >= last_searched(e)) RC_TRY(search_level(context, e, exponent, level));
-  if (!exponent && e->take_beside && !e->on_rails && !e->on_lattice)
+  if (!exponent && e->take_beside && !e->on_rails && !e->on_lattice && !e->by_periods)
     RC_TRY(rc_take_beside(context, level, rc_key((uint64_t)e->params->seed, 96, 0), false));
   level->locked = NULL, level->board = NULL;
   rc_release(context, mark);

@@ -28,7 +28,7 @@
 #define REGULAR .6f
 #define REGULAR_RISE .75f
 #define LEAST_SINE .5f
-/* Of what is smaller patches see more than one. */
+/* Of what is smaller patches see nearly two. */
 #define LEAST_DUE_PX 7.f
 #define BESIDE_PX 4
 /* What is due is off by .1 to 1 of the variance, bare ground among heaps by 2. */
@@ -145,7 +145,8 @@ static bool is_confirmed(const peak *peaks, int count, const peak *p, const peak
   for (int n = 0; n < 4 * count; n++) {
     const peak *at = &peaks[n / 4];
     float by = n % 2 ? 1.f : -1.f, sign = n / 2 % 2 ? 1.f : -1.f;
-    if (at->value >= CONFIRMED && fabsf(sign * at->x - p->x - by * q->x) <= MOST_OFF_PX &&
+    if (at->value >= CONFIRMED && at->rise > 0 &&
+        fabsf(sign * at->x - p->x - by * q->x) <= MOST_OFF_PX &&
         fabsf(sign * at->y - p->y - by * q->y) <= MOST_OFF_PX)
       return true;
   }
@@ -206,7 +207,7 @@ static void refine_base(const peak *peaks, int count, rc_periods *periods) {
     const peak *at = &peaks[n];
     double i = rc_round((float)((at->x * q->b - at->y * q->a) / area));
     double j = rc_round((float)((at->y * p->a - at->x * p->b) / area));
-    if (at->value < REGULAR || fabs(at->x - i * p->a - j * q->a) > MOST_OFF_PX ||
+    if (at->value < REGULAR || !(at->rise > 0) || fabs(at->x - i * p->a - j * q->a) > MOST_OFF_PX ||
         fabs(at->y - i * p->b - j * q->b) > MOST_OFF_PX)
       continue;
     ii += i * i, ij += i * j, jj += j * j;

@@ -7,7 +7,7 @@
 #define RC_MOST_PERIODS 60
 
 /* Each displacement is tried at so many points, or at fewer to know what is regular: chance then
- * correlates .03 or .05, far below the least peak. */
+ * correlates .03 or .05, and twice that where few of them are shared. */
 #define RC_PERIOD_POINTS 1200
 #define RC_REGULAR_POINTS 400
 

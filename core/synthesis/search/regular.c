@@ -8,7 +8,7 @@
 /* So many periods each way. */
 #define MOST_TIMES 4
 #define SIDE (2 * MOST_TIMES + 1)
-/* A range reaches a little beyond what it is to hold, and no farther than this. */
+/* A range reaches a little beyond what it is to hold, which is no farther than this. */
 #define REACH_BY 1.05f
 #define WIDEST 2.f
 
@@ -35,16 +35,16 @@ static rc_copy move_by(const rc_periods *periods, int n) {
   return (rc_copy){i * base[0].a + j * base[1].a, i * base[0].b + j * base[1].b, 0.f};
 }
 
-/* The ratio nearest to 1 by which a whole period is a source; 1 where there is none. */
+/* The ratio nearest to 1 by which a patch whole periods away is source; 1 where there is none. */
 static float nearest_ratio(const rc_level *level, const rc_periods *periods, int x, int y) {
   rc_chart flat = rc_chart_flat(level->chart);
   float best = WIDEST;
-  uint32_t pixel;
+  size_t at;
   for (int n = 0; n < SIDE * SIDE; n++) {
     if (n == SIDE * SIDE / 2) continue;
     rc_place place =
         rc_copy_place(&flat, move_by(periods, n), rc_level_x(level, x), rc_level_y(level, y));
-    if (!rc_place_pixel(level, &place, &pixel)) continue;
+    if (!rc_place_at(level, &place, &at) || level->room[at] <= RC_PATCH_RADIUS + 1) continue;
     float off = fmaxf(place.ratio, 1 / place.ratio);
     if (off < fmaxf(best, 1 / best)) best = place.ratio;
   }

@@ -11,7 +11,7 @@
 recede_status rc_is_due(rc_context *context, const rc_image *images, const rc_mask *flags,
                         int levels, const rc_chart *chart, float gain, uint64_t key, bool *due);
 /* Widens the ranges of scale until they hold, of each target pixel, the source nearest in scale
- * that lies whole periods away. */
+ * that lies up to four whole periods away. */
 void rc_reach_periods(rc_level *level, const rc_periods *periods);
 /* Moves by whole periods, the context's. */
 recede_status rc_moves_by_periods(rc_context *context, const rc_periods *periods,
