@@ -12,15 +12,6 @@
 /* What the marking, which runs through the middle, is at right angles to. */
 static double cosine, sine;
 
-/* Of so many values a texel, smooth between them. */
-static double smooth_noise(double u, double v, double per_texel, int n) {
-  double x = u * per_texel, y = v * per_texel, fx = x - floor(x), fy = y - floor(y);
-  int i = (int)floor(x), j = (int)floor(y);
-  double upper = noise_at(i, j, n) * (1 - fx) + noise_at(i + 1, j, n) * fx;
-  double lower = noise_at(i, j + 1, n) * (1 - fx) + noise_at(i + 1, j + 1, n) * fx;
-  return upper * (1 - fy) + lower * fy - .5;
-}
-
 /* Asphalt with grains and stains of all sizes. */
 static double road(double u, double v, int k) {
   double color = .35 + .01 * k;

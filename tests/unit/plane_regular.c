@@ -10,13 +10,8 @@
  * darker than its wall. */
 #define NEAR_TRUTH .2
 
-/* Of so many values a texel, smooth between them. */
 static double stains(double u, double v, double per_texel, int n) {
-  double x = u * per_texel, y = v * per_texel, fx = x - floor(x), fy = y - floor(y);
-  int i = (int)floor(x), j = (int)floor(y);
-  double upper = noise_at(i, j, n) * (1 - fx) + noise_at(i + 1, j, n) * fx;
-  double lower = noise_at(i, j + 1, n) * (1 - fx) + noise_at(i + 1, j + 1, n) * fx;
-  return .1 * (upper * (1 - fy) + lower * fy - .5);
+  return .1 * smooth_noise(u, v, per_texel, n);
 }
 
 /* Of a chess board, turned; 6.5 texels wide. */

@@ -62,6 +62,14 @@ double noise_at(int x, int y, int n) {
   return (double)(h ^ (h >> 16)) / 4294967296.;
 }
 
+double smooth_noise(double u, double v, double per_texel, int n) {
+  double x = u * per_texel, y = v * per_texel, fx = x - floor(x), fy = y - floor(y);
+  int i = (int)floor(x), j = (int)floor(y);
+  double upper = noise_at(i, j, n) * (1 - fx) + noise_at(i + 1, j, n) * fx;
+  double lower = noise_at(i, j + 1, n) * (1 - fx) + noise_at(i + 1, j + 1, n) * fx;
+  return upper * (1 - fy) + lower * fy - .5;
+}
+
 /* Strictly periodic: two bricks wide, two courses high. */
 double bricks(double u, double v, int k) {
   double row = floor(v), shifted = u * .5 + .5 * fmod(fabs(row), 2);

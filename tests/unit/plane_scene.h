@@ -26,6 +26,8 @@ void picture_set(picture *p, int x, int y, int k, float value);
 void picture_fill(picture *p, area a, float value);
 /* A uniform number in 0..1 that depends on these alone. */
 double noise_at(int x, int y, int n);
+/* One in -.5 to .5, of so many a texel, smooth between them. */
+double smooth_noise(double u, double v, double per_texel, int n);
 
 /* Colours over a plane: (u, v) in texels. */
 typedef double pattern(double u, double v, int k);
