@@ -163,6 +163,7 @@ static recede_status find_dashes(rc_context *context, const rc_problem *problem,
   return rc_poll(context);
 }
 
+/* Before anything is called foreign: the sources that would be taken tell it, too. */
 static recede_status find_due(rc_context *context, const rc_problem *problem, rc_descent *e) {
   rc_chart flat = chart_of(problem, false);
   const recede_params *params = e->params;

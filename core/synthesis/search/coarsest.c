@@ -29,7 +29,7 @@
  * .6 to 1.4, roof tiles that are all alike 1.6 and more: they keep in order by themselves. */
 #define FAVOUR_OF_LATTICE 1.3
 /* What is regular costs .56 to 1.17 of what others do that go on with the wrong square or window;
- * at roof tiles whose start is good as it is 1.26 and more. */
+ * roof tiles whose other starts are good as they are 1.26 and more. */
 #define FAVOUR_OF_PERIODS 1.22
 /* What comes from another board is not what this one shows again and again beside the hole. */
 #define FAVOUR_OF_BOARDS 1.25
@@ -302,7 +302,7 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
                            &e->lattice));
   if (!e->params->engine_regular || e->params->surface == RECEDE_SURFACE_RAISED)
     e->periods.regular = e->periods.due = false;
-  /* What lies beside a square is another one's, and so is what lies in the next. */
+  /* Also where traits tell what brightness did not: beside a square lies another one. */
   if (e->periods.due) rc_conditions_forget_kin(&e->conditions);
   /* Where lines cross the hole there are things that go on as a whole. But whole copies that break
    * lines fit well, and must not win over those that continue them. */
