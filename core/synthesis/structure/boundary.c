@@ -189,7 +189,7 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
     if (!rc_parallel_in_plane(direction, rc_crossing_direction(chart, &lines[i]))) continue;
     bool same = rc_crossing_distance(&line, lines[i].ax, lines[i].ay) < apart_px &&
                 rc_crossing_distance(&line, lines[i].bx, lines[i].by) < apart_px;
-    if (!same)
+    if (!same && !lines[i].alone)
       RC_TRY(rc_repeats_beside(context, images, masks, levels, chart, &lines[i], boundary,
                                lines[i].ax, lines[i].ay, &repeats));
     if (!repeats) kept[kept_count++] = lines[i];

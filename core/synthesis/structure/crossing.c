@@ -34,6 +34,17 @@ bool rc_crossing_is_sure(const rc_crossing *line) {
   return line->strength >= SURE_STRENGTH && line->kept >= SURE_KEPT;
 }
 
+bool rc_crossing_is_lone(const rc_crossing *line) {
+  return line->alone && rc_crossing_is_sure(line);
+}
+
+void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count) {
+  int kept = 0;
+  for (int i = 0; i < *count; i++)
+    if (rc_crossing_is_lone(&lines[i])) lines[kept++] = lines[i];
+  *count = kept;
+}
+
 rc_crossing rc_crossing_coarser(rc_crossing line, int exponent) {
   float unit = rc_exp2((float)exponent), *ends[] = {&line.ax, &line.ay, &line.bx, &line.by};
   for (int k = 0; k < 4; k++) *ends[k] = (*ends[k] + .5f) / unit - .5f;
@@ -55,18 +66,28 @@ rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *c) {
 
 bool rc_parallel_in_plane(rc_copy p, rc_copy q) { return fabsf(p.a * q.a + p.b * q.b) > PARALLEL; }
 
+/* As rails do across their sleepers. */
+static bool stands_out(const rc_crossing *line) {
+  return line->alone && line->strength >= RC_CLEAR_STRENGTH;
+}
+
 void rc_crossings_keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
                                 int *count) {
   rc_copy directions[RC_MOST_LINES];
   float most = 0;
   int leading = -1, kept = 0;
+  bool any_stands_out = false;
   for (int i = 0; i < *count; i++) directions[i] = rc_crossing_direction(chart, &lines[i]);
   for (int i = 0; i < *count && lines[i].strength >= LEAST_LEADING_STRENGTH; i++) {
+    bool one_stands_out = false;
     float sum = 0;
-    for (int k = 0; k < *count; k++)
-      if (rc_parallel_in_plane(directions[i], directions[k]))
-        sum += rc_crossing_length(&lines[k]) * sqrtf(fminf(lines[k].strength, RC_CLEAR_STRENGTH));
-    if (sum > most) most = sum, leading = i;
+    for (int k = 0; k < *count; k++) {
+      if (!rc_parallel_in_plane(directions[i], directions[k])) continue;
+      sum += rc_crossing_length(&lines[k]) * sqrtf(fminf(lines[k].strength, RC_CLEAR_STRENGTH));
+      one_stands_out = one_stands_out || stands_out(&lines[k]);
+    }
+    if (one_stands_out == any_stands_out ? sum <= most : any_stands_out) continue;
+    most = sum, leading = i, any_stands_out = one_stands_out;
   }
   for (int i = 0; i < *count && leading >= 0; i++)
     if (rc_parallel_in_plane(directions[i], directions[leading])) lines[kept++] = lines[i];

@@ -19,6 +19,7 @@ typedef struct rc_crossing {
   float kept;      /* the part of its contrast that its pieces' sources have */
   float rise;      /* -1..1: how far a is a step across */
   float as_strong; /* the part of the rest of the hole's border where some line is as strong */
+  bool alone;      /* hardly any parallel to it looks the same */
   float axis[3];   /* the weights of colours it was seen by */
   /* How far it reaches to its left and right, px where w = 1; 0 where that is not told. */
   float reach_px[2];
@@ -33,16 +34,21 @@ float rc_crossing_distance(const rc_crossing *line, float x, float y);
 bool rc_crossing_is_right(const rc_crossing *line, float x, float y);
 /* It stands out, and what it is followed by looks like it all along: no chance. */
 bool rc_crossing_is_sure(const rc_crossing *line);
+/* It is, and none beside it looks the same: no joint of many. */
+bool rc_crossing_is_lone(const rc_crossing *line);
 /* Its direction in the plane, a unit vector. chart: of the same level. */
 rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *line);
 /* Of two such directions, within 4 degrees. */
 bool rc_parallel_in_plane(rc_copy a, rc_copy b);
 /* The same line in px of a level 2^exponent times coarser; a negative exponent: finer. */
 rc_crossing rc_crossing_coarser(rc_crossing line, int exponent);
-/* Of so many lines keeps one direction, that of the greatest length together: where two would
- * cross, each needs another copy. chart: of the same level. */
+/* Of so many lines keeps one direction, that of the greatest length together, or of those with a
+ * clear one that stands alone: where two would cross, each needs another copy. chart: of the same
+ * level. */
 void rc_crossings_keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
                                 int *count);
+/* Keeps those that are. */
+void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count);
 /* Keeps those that have nearly all of the hole on one side. flags: of the same level. */
 void rc_crossings_keep_corners(const rc_mask *flags, rc_crossing lines[RC_MOST_LINES], int *count);
 

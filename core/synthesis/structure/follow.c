@@ -66,14 +66,6 @@ static void set_frame(frame *f) {
   f->ruler.ux = dx / f->length, f->ruler.uy = dy / f->length;
 }
 
-static bool source_at(const void *user, int x, int y, float *value) {
-  const rc_seen *picture = user;
-  if (!rc_inside(picture->flags->width, picture->flags->height, x, y)) return false;
-  size_t at = (size_t)y * (size_t)picture->flags->width + (size_t)x;
-  *value = picture->value[at];
-  return (picture->flags->data[at] & RC_SOURCE) != 0;
-}
-
 /* Moves an end across the line until its nearest px look like its run does in the mean; outwards is
  * -1 at a and 1 at b. own: the profile there. */
 static bool pin(const frame *f, float outwards, float *x, float *y, rc_profile *own) {
@@ -213,7 +205,7 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, bool a
   float most = LEAST_KEPT;
   rc_crossing best;
   bool found = false;
-  frame f = {.ruler = {.value = source_at, .picture = picture},
+  frame f = {.ruler = {.value = rc_seen_source, .picture = picture},
              .chart = chart,
              .line = line,
              .most_reduced = way->most_reduced};

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/real.h"
+#include "synthesis/structure/alone.h"
 #include "synthesis/structure/follow.h"
 
 /* Profiles are averaged along a run outside the hole. */
@@ -278,6 +279,14 @@ static int collect_border(const rc_mask *flags, int32_t *border) {
   return count;
 }
 
+bool rc_seen_source(const void *user, int x, int y, float *value) {
+  const rc_seen *picture = user;
+  if (!rc_inside(picture->flags->width, picture->flags->height, x, y)) return false;
+  size_t at = (size_t)y * (size_t)picture->flags->width + (size_t)x;
+  *value = picture->value[at];
+  return (picture->flags->data[at] & RC_SOURCE) != 0;
+}
+
 recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *flags,
                      const float axis[3], rc_seen *seen) {
   size_t pixels = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;
@@ -340,6 +349,9 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
   RC_TRY(rc_lines_at(context, &seen, lines, count));
   if (corners) rc_crossings_keep_corners(mask, lines, count);
   rc_chart here = rc_chart_coarser(*chart, exponent);
+  int reach_px = rc_longer_side(rc_box_of(mask, RC_TARGET));
+  for (int i = 0; i < *count; i++)
+    lines[i].alone = rc_stands_alone(&seen, &here, &lines[i], reach_px);
   rc_crossings_keep_parallel(&here, lines, count);
   follow(&seen, &here, exponent, lines, count);
   if (*count == 1 && lines->as_strong > MOST_AS_STRONG) *count = 0;

@@ -12,6 +12,8 @@ typedef struct rc_seen {
   const float *value;
 } rc_seen;
 
+/* Of an rc_seen; false: (x, y) is no source. */
+bool rc_seen_source(const void *seen, int x, int y, float *value);
 /* The level's pixels by these weights of their channels. */
 recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *flags,
                      const float axis[3], rc_seen *seen);

@@ -194,7 +194,7 @@ static bool keep_lines_straight(const rc_chart *chart, const rc_crossing *lines,
 
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                             int levels, const rc_chart *chart, bool may_repeat,
-                            const rc_crossing *lines, int *count, rc_rails *rails) {
+                            rc_crossing *lines, int *count, rc_rails *rails) {
   int coarse = levels - 1, fine = coarse > FINER_BY ? coarse - FINER_BY : 0;
   const rc_mask *flags = &masks[coarse];
   rc_chart here = rc_chart_coarser(*chart, coarse);
@@ -222,7 +222,7 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
   if (*count && !rc_runs(rails) && may_repeat) {
     bool repeats;
     RC_TRY(rc_repeats_near(context, &images[coarse], flags, &here, along.a, along.b, &repeats));
-    if (repeats) *count = 0;
+    if (repeats) rc_crossings_keep_lone(lines, count);
   }
   rc_release(context, mark);
   return rc_poll(context);

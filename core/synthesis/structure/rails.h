@@ -49,7 +49,7 @@ rc_copy rc_copy_on_rails(const rc_rails *rails, const rc_chart *chart, float tol
  * pyramid's levels, finest first; chart: of the finest. */
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                             int levels, const rc_chart *chart, bool may_repeat,
-                            const rc_crossing *lines, int *count, rc_rails *rails);
+                            rc_crossing *lines, int *count, rc_rails *rails);
 
 /* Whether the texture runs along the rails on both sides of the boundary, px of the finest level.
  */

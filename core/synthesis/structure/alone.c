@@ -1,0 +1,64 @@
+#include "synthesis/structure/alone.h"
+
+#include "synthesis/structure/follow.h"
+
+/* Profiles are averaged along so many samples outside the hole. */
+#define RUN 16
+#define STEP_PX 2.f
+/* Another line looks the same if their profiles correlate by so much, and neither has so many times
+ * the other's contrast. */
+#define LEAST_LIKENESS .8f
+#define MOST_UNLIKE 2.f
+/* So many may: there are two kerbs and two rails. Of bricks, tiles and boards 3 to 15 do. */
+#define MOST_AGAIN 1
+
+typedef struct beside {
+  const rc_seen *picture;
+  const rc_crossing *line;
+  rc_chart flat;
+  rc_copy across; /* a unit vector in the plane */
+} beside;
+
+/* Of the line moved across by so much, at its end b or, outwards being -1, a. */
+static bool profile_of(const beside *at, float moved, float outwards, rc_profile *profile) {
+  const rc_crossing *c = at->line;
+  rc_copy move = {moved * at->across.a, moved * at->across.b, 0};
+  rc_place a = rc_copy_place(&at->flat, move, c->ax - at->flat.x0, c->ay - at->flat.y0);
+  rc_place b = rc_copy_place(&at->flat, move, c->bx - at->flat.x0, c->by - at->flat.y0);
+  const rc_place *end = outwards < 0 ? &a : &b;
+  float dx = b.x - a.x, dy = b.y - a.y, length = sqrtf(dx * dx + dy * dy);
+  if (a.beyond || b.beyond || !(length > 0)) return false;
+  rc_ruler ruler = {rc_seen_source, at->picture, dx / length, dy / length, NULL};
+  return rc_profile_mean(&ruler, end->x + at->flat.x0, end->y + at->flat.y0,
+                         outwards * RC_PROFILE_FROM_PX, outwards * STEP_PX, RUN, profile);
+}
+
+static bool alike(const rc_profile *p, const rc_profile *q) {
+  float pp = rc_profile_dot(p, p), qq = rc_profile_dot(q, q), most = MOST_UNLIKE * MOST_UNLIKE;
+  return rc_profile_dot(p, q) > LEAST_LIKENESS * sqrtf(pp * qq) && pp < most * qq && qq < most * pp;
+}
+
+/* How often it comes again, in places next to one another once. */
+static int count_again(const beside *at, float outwards, float px, int reach_px) {
+  rc_profile own, other;
+  int count = 0;
+  bool before = false;
+  if (!profile_of(at, 0, outwards, &own)) return 0;
+  for (int k = -reach_px; k <= reach_px; k++) {
+    bool again = (k < -RC_PROFILE || k > RC_PROFILE) &&
+                 profile_of(at, (float)k * px, outwards, &other) && alike(&own, &other);
+    count += again && !before;
+    before = again;
+  }
+  return count;
+}
+
+bool rc_stands_alone(const rc_seen *picture, const rc_chart *chart, const rc_crossing *line,
+                     int reach_px) {
+  rc_copy along = rc_crossing_direction(chart, line);
+  beside at = {picture, line, rc_chart_flat(*chart), {-along.b, along.a, 0}};
+  float a = rc_chart_w(chart, line->ax, line->ay), b = rc_chart_w(chart, line->bx, line->by);
+  if (!(a > 0 && b > 0)) return false;
+  return count_again(&at, -1, 1 / a, reach_px) <= MOST_AGAIN &&
+         count_again(&at, 1, 1 / b, reach_px) <= MOST_AGAIN;
+}
