@@ -136,10 +136,10 @@ static double without_copy(const rc_level *level) {
   return targets ? (double)without / targets : 0;
 }
 
-static recede_status moves_along(rc_context *context, const rc_rails *along, int exponent,
-                                 const rc_level *level, const rc_copy **moves, int *count) {
+static recede_status moves_along(rc_context *context, const rc_descent *e, const rc_level *level,
+                                 const rc_copy **moves, int *count) {
   rc_copy *made;
-  rc_rails rails = rc_rails_coarser(*along, exponent);
+  rc_rails rails = rc_rails_coarser(e->rails, e->level_count - 1);
   int rows = rails.rows < WHOLE_ROWS ? rails.rows : WHOLE_ROWS;
   int each = 2 * (2 * rows + 1), most = level->width + level->height - LEAST_MOVE_PX;
   if (most > RC_WHOLE_CANDIDATES / each) most = RC_WHOLE_CANDIDATES / each;
@@ -163,7 +163,7 @@ static recede_status start_on_rails(rc_context *context, const rc_descent *e, in
                                     double without, rc_pace *p, rc_level *level,
                                     rc_workspace *scratch, rc_trial *best, double *own) {
   starts s = {first, first, first + count, NULL, 0};
-  RC_TRY(moves_along(context, &e->rails, e->level_count - 1, level, &s.moves, &s.move_count));
+  RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
   RC_TRY(try_starts(context, e, &s, p, level, scratch, best, own));
   *own += price_of_broken_lines(e, level, best);
   /* Where few had a copy before half of these must have: an empty start fits well. */
@@ -183,7 +183,7 @@ static recede_status keep_to_rails(rc_context *context, rc_descent *e, int count
   RC_TRY(rc_boards_mark(context, &e->rails, e->level_count - 1, level));
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_trial_new(context, level, &best));
-  RC_TRY(moves_along(context, &e->rails, e->level_count - 1, level, &s.moves, &s.move_count));
+  RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
   e->on_rails = true;
   RC_TRY(try_starts(context, e, &s, &p, level, scratch, &best, &own));
   rc_trial_restore(level, &best);
@@ -319,11 +319,6 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   int trials = plain + with_lines, whole = e->params->engine_whole ? with_lines / 2 : 0;
   starts by_chance = {0, plain, plain, NULL, 0};
   starts along_lines = {plain, trials - whole, trials, NULL, 0};
-  if (e->line_count && rc_crossing_is_lone(&e->lines[0])) {
-    rc_copy d = rc_crossing_direction(&e->chart, &e->lines[0]);
-    rc_rails along = {.a = d.a, .b = d.b};
-    RC_TRY(moves_along(context, &along, exponent, level, &along_lines.moves, &along_lines.move_count));
-  }
   if (trials == 1 && !in_lattice && !on_rails) {
     rc_pace p = {0, iterations};
     RC_TRY(start_once(context, e, &by_chance, 0, level));
