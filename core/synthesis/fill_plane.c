@@ -139,7 +139,7 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
                        e->lines, &e->line_count, &e->rails));
   if (e->params->engine_boundary && !e->due)
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
-                            &e->line_count, &e->rails, &e->sides.boundary));
+                            &e->line_count, &e->rails, &e->sides));
   if (!e->params->engine_rails) e->rails = (rc_rails){0};
   if (rc_runs(&e->rails) && e->params->surface != RECEDE_SURFACE_RAISED && e->params->engine_gauge)
     RC_TRY(rc_gauge_find(context, e->images, e->flags, e->level_count, &e->chart, &e->rails));
@@ -189,7 +189,7 @@ static recede_status find_regions(rc_context *context, rc_descent *e) {
   e->sides.apart = two && (chords || rc_has_sides(&e->sides));
   if (!chords || (rc_has_sides(&e->sides) && chords == 1)) return RECEDE_OK;
   regions.px = (float)(1 << last);
-  e->sides.boundary = (rc_boundary){0, 0, 0};
+  e->sides.boundary_count = 0;
   e->sides.regions = regions;
   return RECEDE_OK;
 }

@@ -82,7 +82,7 @@ static inline bool rc_level_same_board(const rc_level *level, int x, int y, int 
 }
 /* Which side's classes and sources a place has. */
 static inline int rc_level_side(const rc_level *level, float x, float y) {
-  return level->ranges.sides > 1 && rc_side(&level->sides, &level->chart, x, y) < 0.f;
+  return level->ranges.sides > 1 && rc_is_other_side(&level->sides, &level->chart, x, y);
 }
 static inline bool rc_level_is_target(const rc_level *level, int x, int y) {
   return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & RC_TARGET) != 0;

@@ -1,6 +1,7 @@
 #include "synthesis/structure/boundary.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -23,6 +24,11 @@
 #define LEAST_SEEN 8
 #define LEAST_STEP 1.f
 #define POWER_STEPS 30
+/* Others are looked for so far to each side of the line, no nearer than strips reach, and lie in
+ * the middle of where their step is this part of its greatest. */
+#define LEAST_BESIDE_PX 4
+#define MOST_BESIDE_PX 32
+#define PART_OF_PEAK .5f
 
 /* The coarsest level, and the sure lines that were found before. What they reach tells nothing of
  * the ground beside them: a road has the same on both sides of its marking. */
@@ -131,11 +137,63 @@ static rc_boundary boundary_of(const rc_chart *chart, const rc_crossing *c) {
   return (rc_boundary){nx, ny, nx * (chart->x0 - c->ax) + ny * (chart->y0 - c->ay)};
 }
 
+/* The line moved across by so many px of where w = 1, its ends where it leaves the hole. False: it
+ * does not cross the hole. */
+static bool move_across(const coarsest *in, const rc_crossing *line, float px, rc_crossing *moved) {
+  rc_chart flat = rc_chart_flat(in->chart);
+  rc_copy along = rc_crossing_direction(&in->chart, line);
+  rc_copy move = {-px * along.b, px * along.a, 0};
+  rc_place a = rc_copy_place(&flat, move, line->ax - flat.x0, line->ay - flat.y0);
+  rc_place b = rc_copy_place(&flat, move, line->bx - flat.x0, line->by - flat.y0);
+  float dx = b.x - a.x, dy = b.y - a.y, length = sqrtf(dx * dx + dy * dy);
+  if (a.beyond || b.beyond || !(length > 0)) return false;
+  float x = a.x + flat.x0, y = a.y + flat.y0, ux = dx / length, uy = dy / length;
+  int first = 0, last = 0;
+  for (int k = -(int)length; k <= 2 * (int)length; k++) {
+    int ix = (int)floorf(x + ux * (float)k + .5f), iy = (int)floorf(y + uy * (float)k + .5f);
+    if (!rc_inside(in->flags->width, in->flags->height, ix, iy)) continue;
+    if (!(*rc_flag(in->flags, ix, iy) & RC_TARGET)) continue;
+    if (first == last) first = k;
+    last = k + 1;
+  }
+  *moved = *line;
+  moved->ax = x + ux * (float)first, moved->ay = y + uy * (float)first;
+  moved->bx = x + ux * (float)last, moved->by = y + uy * (float)last;
+  return last > first;
+}
+
+/* Where a strip of a third texture lies beside the line, as a kerb does, it ends in a parallel line
+ * that steps, too. in: the coarsest level, line: the first one there. */
+static void find_beside(const coarsest *in, float least, const rc_crossing *line, rc_sides *sides) {
+  float steps[2 * MOST_BESIDE_PX + 1];
+  rc_crossing moved;
+  for (int k = 0; k <= 2 * MOST_BESIDE_PX; k++)
+    steps[k] = move_across(in, line, (float)(k - MOST_BESIDE_PX), &moved) ? step_across(in, &moved)
+                                                                          : 0;
+  while (sides->boundary_count < RC_MOST_BOUNDARIES) {
+    int most = 0, low, high;
+    float sum = 0, place = 0;
+    for (int k = 0; k <= 2 * MOST_BESIDE_PX; k++)
+      if (abs(k - MOST_BESIDE_PX) >= LEAST_BESIDE_PX && steps[k] > steps[most]) most = k;
+    if (abs(most - MOST_BESIDE_PX) < LEAST_BESIDE_PX || steps[most] < least) return;
+    for (low = most; low > 0 && steps[low - 1] > PART_OF_PEAK * steps[most]; low--) continue;
+    for (high = most; high < 2 * MOST_BESIDE_PX && steps[high + 1] > PART_OF_PEAK * steps[most]; high++) continue;
+    for (int k = low; k <= high; k++) sum += steps[k], place += steps[k] * (float)(k - MOST_BESIDE_PX);
+    bool own = low <= MOST_BESIDE_PX && high >= MOST_BESIDE_PX;
+    for (int k = low - LEAST_BESIDE_PX; k <= high + LEAST_BESIDE_PX; k++)
+      if (k >= 0 && k <= 2 * MOST_BESIDE_PX) steps[k] = 0;
+    if (own || !move_across(in, line, place / sum, &moved)) continue;
+    sides->boundaries[sides->boundary_count++] = boundary_of(&in->chart, &moved);
+  }
+}
+
 /* before: lines that were found. Searches the levels for the line between two textures, px of the
- * finest level; *apart_px: no other is nearer. False: there is none. */
+ * finest level; *apart_px: no other is nearer. sides: that one and those beside it. False: there is
+ * none. */
 static recede_status search(rc_context *context, const rc_image *images, const rc_mask *masks,
                             int levels, int from, const rc_chart *chart, const rc_crossing *before,
-                            int before_count, rc_crossing *line, float *apart_px, bool *found) {
+                            int before_count, rc_crossing *line, float *apart_px, bool *found,
+                            rc_sides *sides) {
   int last = levels - 1, count;
   coarsest in = {&images[last], &masks[last], rc_chart_coarser(*chart, last), .marking_count = 0};
   double covariance[3][3];
@@ -162,6 +220,11 @@ static recede_status search(rc_context *context, const rc_image *images, const r
     memcpy(best.axis, line->axis, sizeof best.axis);
     *line = rc_crossing_coarser(best, -exponent);
     *apart_px = (float)(RC_PROFILE << exponent);
+    sides->boundaries[0] = boundary_of(chart, line);
+    sides->boundary_count = 1;
+    best = rc_crossing_coarser(*line, last);
+    find_beside(&in, least, &best, sides);
+    for (int i = 1; i < sides->boundary_count; i++) sides->boundaries[i].at *= (float)(1 << last);
   }
   return RECEDE_OK;
 }
@@ -169,28 +232,29 @@ static recede_status search(rc_context *context, const rc_image *images, const r
 recede_status rc_boundary_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                                int levels, int from, const rc_chart *chart,
                                rc_crossing lines[RC_MOST_LINES], int *count, rc_rails *rails,
-                               rc_boundary *boundary) {
+                               rc_sides *sides) {
   rc_crossing line, kept[RC_MOST_LINES];
   float apart_px;
   bool found, again = false, boards;
   int kept_count = 0;
-  *boundary = (rc_boundary){0, 0, 0};
-  RC_TRY(
-      search(context, images, masks, levels, from, chart, lines, *count, &line, &apart_px, &found));
+  rc_sides sought = {.boundary_count = 0};
+  sides->boundary_count = 0;
+  RC_TRY(search(context, images, masks, levels, from, chart, lines, *count, &line, &apart_px, &found,
+                &sought));
   rc_copy direction = found ? rc_crossing_direction(chart, &line) : (rc_copy){0, 0, 0};
   if (!found || rc_parallel_in_plane(direction, (rc_copy){rails->a, rails->b, 0})) return RECEDE_OK;
-  rc_boundary between = boundary_of(chart, &line);
-  RC_TRY(rc_runs_on_both_sides(context, images, masks, levels, chart, rails, &between, &boards));
+  const rc_boundary *between = &sought.boundaries[0];
+  RC_TRY(rc_runs_on_both_sides(context, images, masks, levels, chart, rails, between, &boards));
   if (boards) return RECEDE_OK; /* light and dark boards' ends in a row */
   *rails = (rc_rails){0};
-  *boundary = between;
+  *sides = sought;
   for (int i = 0; i < *count; i++) {
     bool repeats = false;
     if (!rc_parallel_in_plane(direction, rc_crossing_direction(chart, &lines[i]))) continue;
     bool same = rc_crossing_distance(&line, lines[i].ax, lines[i].ay) < apart_px &&
                 rc_crossing_distance(&line, lines[i].bx, lines[i].by) < apart_px;
     if (!same && !lines[i].alone)
-      RC_TRY(rc_repeats_beside(context, images, masks, levels, chart, &lines[i], boundary,
+      RC_TRY(rc_repeats_beside(context, images, masks, levels, chart, &lines[i], between,
                                lines[i].ax, lines[i].ay, &repeats));
     if (!repeats) kept[kept_count++] = lines[i];
     again = again || same;

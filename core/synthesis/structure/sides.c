@@ -21,13 +21,27 @@ static float distance_at(const rc_regions *map, float x, float y) {
   return upper * (1.f - fy) + lower * fy;
 }
 
-float rc_side(const rc_sides *sides, const rc_chart *chart, float x, float y) {
-  const rc_boundary *b = &sides->boundary;
+/* px of the level, in the picture. */
+static float far_from(const rc_sides *sides, const rc_chart *chart, int boundary, float x,
+                      float y) {
+  const rc_boundary *b = &sides->boundaries[boundary];
   const rc_regions *map = &sides->regions;
-  float far = b->nx * x + b->ny * y + b->at, unit = sides->px / (map->distance ? map->px : 1.f);
-  if (map->distance)
-    far = distance_at(map, (x + chart->x0 + .5f) * unit - .5f, (y + chart->y0 + .5f) * unit - .5f) /
-          unit;
-  far /= 1.f + chart->lx * x + chart->ly * y;
-  return far / (fabsf(far) + HALF_PX / sides->px);
+  if (!map->distance) return b->nx * x + b->ny * y + b->at;
+  float unit = sides->px / map->px;
+  return distance_at(map, (x + chart->x0 + .5f) * unit - .5f, (y + chart->y0 + .5f) * unit - .5f) /
+         unit;
+}
+
+float rc_side(const rc_sides *sides, const rc_chart *chart, float x, float y) {
+  float w = 1.f + chart->lx * x + chart->ly * y, side = 0.f;
+  int count = sides->regions.distance ? 1 : sides->boundary_count;
+  for (int i = 0; i < count; i++) {
+    float far = far_from(sides, chart, i, x, y) / w;
+    side += far / (fabsf(far) + HALF_PX / sides->px);
+  }
+  return side;
+}
+
+bool rc_is_other_side(const rc_sides *sides, const rc_chart *chart, float x, float y) {
+  return far_from(sides, chart, 0, x, y) < 0.f;
 }

@@ -1,5 +1,6 @@
-/* Which of two textures a place belongs to. What is to be filled on one side is copied from that
- * side. Where there are no two, all lies on one. */
+/* Which of two textures a place belongs to, or of more that lie side by side, as a pavement, a kerb
+ * and a road do. What is to be filled on one side is copied from that side. Where there are no two,
+ * all lies on one. */
 #ifndef RECEDE_SYNTHESIS_STRUCTURE_SIDES_H
 #define RECEDE_SYNTHESIS_STRUCTURE_SIDES_H
 
@@ -28,25 +29,32 @@ typedef struct rc_regions {
   float px; /* one of its px, in px of the finest level */
 } rc_regions;
 
-/* One of them, as a level sees it. */
+#define RC_MOST_BOUNDARIES 3
+
+/* Boundaries that are parallel in the plane, their normals to the same side, or regions, as a level
+ * sees them. */
 typedef struct rc_sides {
-  rc_boundary boundary;
+  rc_boundary boundaries[RC_MOST_BOUNDARIES]; /* the one whose place is known best first */
+  int boundary_count;
   rc_regions regions;
   bool apart; /* they look different: each has sources and detail of its own */
   float px;   /* one px of the level, in px of the finest */
 } rc_sides;
 
 static inline bool rc_has_sides(const rc_sides *sides) {
-  return sides->boundary.nx != 0.f || sides->boundary.ny != 0.f || sides->regions.distance;
+  return sides->boundary_count || sides->regions.distance;
 }
 /* The finest level's sides at one 2^exponent times coarser. */
 static inline rc_sides rc_sides_coarser(rc_sides sides, int exponent) {
-  sides.boundary = rc_boundary_coarser(sides.boundary, exponent);
+  for (int i = 0; i < sides.boundary_count; i++)
+    sides.boundaries[i] = rc_boundary_coarser(sides.boundaries[i], exponent);
   sides.px *= (float)(1 << exponent);
   return sides;
 }
-/* From -1 to 1, 0 where they meet; in the plane, so that what lies along a boundary has the same.
- */
+/* Of regions or one boundary from -1 to 1, 0 where they meet; each boundary more adds as much. In
+ * the plane, so that what lies along a boundary has the same. */
 float rc_side(const rc_sides *sides, const rc_chart *chart, float x, float y);
+/* On which side of the regions or the first boundary. */
+bool rc_is_other_side(const rc_sides *sides, const rc_chart *chart, float x, float y);
 
 #endif
