@@ -54,11 +54,11 @@ static bool is_marked(const coarsest *c, float x, float y) {
   return false;
 }
 
-/* Beside the run that leaves (x, y) along u; side -1 or 1 of u. */
-static strip look(const coarsest *c, float x, float y, float ux, float uy, float side) {
+/* Beside the run that leaves (x, y) along u, from so far on; side -1 or 1 of u. */
+static strip look(const coarsest *c, float x, float y, float ux, float uy, float side, int from) {
   const rc_image *image = c->image;
   strip s = {{0, 0, 0}, 0};
-  for (int along = 1; along <= STRIP_LENGTH_PX; along++)
+  for (int along = from + 1; along <= from + STRIP_LENGTH_PX; along++)
     for (float across = STRIP_FROM_PX; across <= STRIP_TO_PX; across++) {
       int px = (int)floorf(x + ux * (float)along - uy * across * side + .5f);
       int py = (int)floorf(y + uy * (float)along + ux * across * side + .5f);
@@ -71,14 +71,14 @@ static strip look(const coarsest *c, float x, float y, float ux, float uy, float
   return s;
 }
 
-/* The product of both ends' steps; 0: too little is known there. */
-static float step_across(const coarsest *in, const rc_crossing *c) {
+/* The product of both ends' steps, so far from the hole; 0: too little is known there. */
+static float step_across(const coarsest *in, const rc_crossing *c, int from) {
   float dx = c->bx - c->ax, dy = c->by - c->ay, length = sqrtf(dx * dx + dy * dy), sum = 0;
   float ux = dx / length, uy = dy / length;
-  strip a = look(in, c->ax, c->ay, -ux, -uy, -1);
-  strip b = look(in, c->ax, c->ay, -ux, -uy, 1);
-  strip p = look(in, c->bx, c->by, ux, uy, 1);
-  strip q = look(in, c->bx, c->by, ux, uy, -1);
+  strip a = look(in, c->ax, c->ay, -ux, -uy, -1, from);
+  strip b = look(in, c->ax, c->ay, -ux, -uy, 1, from);
+  strip p = look(in, c->bx, c->by, ux, uy, 1, from);
+  strip q = look(in, c->bx, c->by, ux, uy, -1, from);
   if (a.seen < LEAST_SEEN || b.seen < LEAST_SEEN || p.seen < LEAST_SEEN || q.seen < LEAST_SEEN)
     return 0;
   for (int k = 0; k < in->image->channels; k++)
@@ -124,7 +124,7 @@ static bool choose(const coarsest *in, int coarser, const rc_seen *seen, const r
   bool found = false;
   for (int i = 0; i < count; i++) {
     rc_crossing c = lines[i], there = rc_crossing_coarser(c, coarser);
-    float step = step_across(in, &there);
+    float step = step_across(in, &there, 0);
     if (step < least || !rc_follow(seen, chart, true, &c)) continue;
     *best = c, least = step, found = true;
   }
@@ -137,8 +137,8 @@ static rc_boundary boundary_of(const rc_chart *chart, const rc_crossing *c) {
   return (rc_boundary){nx, ny, nx * (chart->x0 - c->ax) + ny * (chart->y0 - c->ay)};
 }
 
-/* The line moved across by so many px of where w = 1, its ends where it leaves the hole. False: it
- * does not cross the hole. */
+/* The line moved across by so many px of where w = 1, its ends where it leaves the hole; beside the
+ * hole, where they come to lie. False: beyond the horizon. */
 static bool move_across(const coarsest *in, const rc_crossing *line, float px, rc_crossing *moved) {
   rc_chart flat = rc_chart_flat(in->chart);
   rc_copy along = rc_crossing_direction(&in->chart, line);
@@ -157,9 +157,10 @@ static bool move_across(const coarsest *in, const rc_crossing *line, float px, r
     last = k + 1;
   }
   *moved = *line;
+  if (first == last) first = 0, last = (int)length;
   moved->ax = x + ux * (float)first, moved->ay = y + uy * (float)first;
   moved->bx = x + ux * (float)last, moved->by = y + uy * (float)last;
-  return last > first;
+  return true;
 }
 
 /* Where a strip of a third texture lies beside the line, as a kerb does, it ends in a parallel line
@@ -168,7 +169,7 @@ static void find_beside(const coarsest *in, float least, const rc_crossing *line
   float steps[2 * MOST_BESIDE_PX + 1];
   rc_crossing moved;
   for (int k = 0; k <= 2 * MOST_BESIDE_PX; k++)
-    steps[k] = move_across(in, line, (float)(k - MOST_BESIDE_PX), &moved) ? step_across(in, &moved)
+    steps[k] = move_across(in, line, (float)(k - MOST_BESIDE_PX), &moved) ? step_across(in, &moved, 0)
                                                                           : 0;
   while (sides->boundary_count < RC_MOST_BOUNDARIES) {
     int most = 0, low, high;
@@ -183,6 +184,8 @@ static void find_beside(const coarsest *in, float least, const rc_crossing *line
     for (int k = low - LEAST_BESIDE_PX; k <= high + LEAST_BESIDE_PX; k++)
       if (k >= 0 && k <= 2 * MOST_BESIDE_PX) steps[k] = 0;
     if (own || !move_across(in, line, place / sum, &moved)) continue;
+    float farther = step_across(in, &moved, STRIP_LENGTH_PX);
+    if (farther != 0 && farther < least) continue;
     sides->boundaries[sides->boundary_count++] = boundary_of(&in->chart, &moved);
   }
 }
