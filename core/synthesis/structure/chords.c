@@ -15,6 +15,9 @@
 /* Chords may turn from the edges' directions: 1 - cos at both ends together. A right angle cut by a
  * chord has .6; real ones had up to .2, chance ones from .76 on. */
 #define MOST_TURN .7f
+/* Edges that meet in a corner do so at 40 to 140 degrees, and count as so much. */
+#define LEAST_SINE .64f
+#define TURN_OF_CORNER .25f
 /* An edge that goes straight on out of the picture, where the hole does, counts as so much. */
 #define TURN_OF_LEAVING .35f
 /* Edges of one thing that leave may get so many times as far from each other, in the plane. */
@@ -140,6 +143,18 @@ static bool cross(const rc_change *a, const rc_change *b, const rc_change *p, co
          side_of_chord(p, q, a) * side_of_chord(p, q, b) < 0;
 }
 
+/* Whether both edges, going straight on, meet in the hole at something like a right angle. */
+static bool make_a_corner(const finder *f, const rc_change *a, const rc_change *b,
+                          rc_change *corner) {
+  float sine = a->ux * b->uy - a->uy * b->ux, dx = a->x - b->x, dy = a->y - b->y;
+  if (fabsf(sine) < LEAST_SINE) return false;
+  float s = (dx * b->uy - dy * b->ux) / sine, t = (dx * a->uy - dy * a->ux) / sine;
+  *corner = (rc_change){a->x - s * a->ux, a->y - s * a->uy, 0, 0};
+  int x = (int)floorf(corner->x + .5f), y = (int)floorf(corner->y + .5f);
+  return s > 0 && t > 0 && rc_inside(f->around->width, f->around->height, x, y) &&
+         !f->around->from_hole[y * f->around->width + x];
+}
+
 /* Where the edge would leave the picture if it went straight on through the hole. False: it would
  * reach something known. */
 static bool leaves_the_picture(const finder *f, const rc_change *c, rc_change *end) {
@@ -174,17 +189,30 @@ static bool opens(const finder *f, const rc_change *a, const rc_change *b, const
          rc_apart(&to[0], &to[1]) > MOST_OPENING * rc_apart(&from[0], &from[1]);
 }
 
-/* Adds a chord. False: it crosses another, or leaves the picture and opens from one. */
-static bool add_chord(const finder *f, rc_chords *to, const rc_change *a, const rc_change *b,
-                      bool leaves, float turned) {
-  rc_change *next = to->end[to->count];
-  for (int i = 0; i < to->count; i++)
+/* Adds a straight piece. False: it crosses another, or leaves the picture and opens from one. */
+static bool add_piece(const finder *f, rc_chords *to, const rc_change *a, const rc_change *b,
+                      bool leaves) {
+  rc_change *next = to->end[to->piece_count];
+  for (int i = 0; i < to->piece_count; i++)
     if (cross(a, b, &to->end[i][0], &to->end[i][1]) ||
         (leaves && opens(f, a, b, &to->end[i][0], &to->end[i][1])))
       return false;
   next[0] = *a, next[1] = *b;
-  to->count++, to->turn += turned;
+  to->piece_count++;
   return true;
+}
+
+static bool add_chord(const finder *f, rc_chords *to, const rc_change *a, const rc_change *b,
+                      bool leaves, float turned) {
+  to->count++, to->turn += turned;
+  return add_piece(f, to, a, b, leaves);
+}
+
+/* One that turns in a corner. */
+static bool add_bent_chord(const finder *f, rc_chords *to, const rc_change *a, const rc_change *b,
+                           const rc_change *corner) {
+  to->count++, to->turn += TURN_OF_CORNER;
+  return add_piece(f, to, a, corner, false) && add_piece(f, to, corner, b, false);
 }
 
 /* Tries all ways to pair up the changes that are not taken, or to lead them out of the picture. */
@@ -201,11 +229,17 @@ static void pair_up(const finder *f, const rc_change *c, int count, unsigned tak
   if (leaves_the_picture(f, &c[i], &out) && add_chord(f, &with, &c[i], &out, true, TURN_OF_LEAVING))
     pair_up(f, c, count, taken | 1u << i, &with, best);
   for (int k = i + 1; k < count; k++) {
+    unsigned both = taken | 1u << i | 1u << k;
+    rc_change corner;
+    if (taken >> k & 1) continue;
     with = *sofar;
-    if (taken >> k & 1 || turn(&c[i], &c[k]) > MOST_TURN ||
-        !add_chord(f, &with, &c[i], &c[k], false, turn(&c[i], &c[k])))
-      continue;
-    pair_up(f, c, count, taken | 1u << i | 1u << k, &with, best);
+    if (make_a_corner(f, &c[i], &c[k], &corner) &&
+        add_bent_chord(f, &with, &c[i], &c[k], &corner))
+      pair_up(f, c, count, both, &with, best);
+    with = *sofar;
+    if (turn(&c[i], &c[k]) <= MOST_TURN &&
+        add_chord(f, &with, &c[i], &c[k], false, turn(&c[i], &c[k])))
+      pair_up(f, c, count, both, &with, best);
   }
 }
 
@@ -223,6 +257,6 @@ recede_status rc_chords_find(rc_context *context, const rc_around *around, const
   for (int i = 0; i < count; i++) follow(&f, &changes[i]);
   pair_up(&f, changes, count, 0, &none, &best);
   memcpy(chords->end, best.end, sizeof best.end);
-  chords->count = best.count, chords->turn = best.turn;
+  chords->count = best.count, chords->piece_count = best.piece_count, chords->turn = best.turn;
   return RECEDE_OK;
 }

@@ -1,6 +1,6 @@
 /* Where the edge between two labelled textures meets the border of a hole, and how it may go on in
  * there: along straight chords from where one texture changes into the other to where they change
- * again, or out of the picture. */
+ * again, round a corner, or out of the picture. */
 #ifndef RECEDE_SYNTHESIS_STRUCTURE_CHORDS_H
 #define RECEDE_SYNTHESIS_STRUCTURE_CHORDS_H
 
@@ -19,8 +19,10 @@ typedef struct rc_change {
 } rc_change;
 
 typedef struct rc_chords {
-  rc_change end[RC_MOST_CHORDS][2];
-  int count;                          /* 0: they cannot be told */
+  rc_change end[2 * RC_MOST_CHORDS][2]; /* of each straight piece */
+  int piece_count;
+  int count;                          /* of chords, each of one piece or, in a corner, of two. 0:
+                                       * they cannot be told */
   float turn;                         /* from the edges' directions, of all together */
   rc_change changes[RC_MOST_CHANGES]; /* all there are, spurs too; none: there are too many */
   int change_count;

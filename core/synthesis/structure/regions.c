@@ -35,7 +35,7 @@ typedef struct finder {
 } finder;
 
 static bool near_a_chord(const rc_chords *c, float x, float y, float px) {
-  for (int i = 0; i < c->count; i++) {
+  for (int i = 0; i < c->piece_count; i++) {
     const rc_change *from = &c->end[i][0], *to = &c->end[i][1];
     float ux = to->x - from->x, uy = to->y - from->y;
     float t = ((x - from->x) * ux + (y - from->y) * uy) / fmaxf(ux * ux + uy * uy, 1e-6f);
