@@ -18,6 +18,11 @@
 /* Edges that meet in a corner do so at 40 to 140 degrees, and count as so much. */
 #define LEAST_SINE .64f
 #define TURN_OF_CORNER .25f
+/* Where they do is told by so much of them, that lies in a wedge which begins with so many px to
+ * each side and gets wider by so much. */
+#define STRAIGHT_PX 20.f
+#define WEDGE_PX 1.5f
+#define WEDGE .12f
 /* An edge that goes straight on out of the picture, where the hole does, counts as so much. */
 #define TURN_OF_LEAVING .35f
 /* Edges of one thing that leave may get so many times as far from each other, in the plane. */
@@ -70,20 +75,22 @@ static rc_change collect(const finder *f, int32_t pixel, uint8_t *left, int32_t 
   return (rc_change){x / count, y / count, 0, 0};
 }
 
+static bool on_edge(const finder *f, int x, int y) {
+  const rc_around *a = f->around;
+  if (!rc_inside(a->width, a->height, x, y)) return false;
+  size_t at = (size_t)y * (size_t)a->width + (size_t)x;
+  int label = a->from_hole[at] ? f->label[at] : 0;
+  return label && (differ(f, x - 1, y, label) || differ(f, x + 1, y, label) ||
+                   differ(f, x, y - 1, label) || differ(f, x, y + 1, label));
+}
+
 /* Looks outwards where the edge leads. */
 static void follow(const finder *f, rc_change *c) {
-  const rc_around *a = f->around;
   int reach = (int)FOLLOWED_PX, cx = (int)(c->x + .5f), cy = (int)(c->y + .5f);
   for (int y = cy - reach; y <= cy + reach; y++)
     for (int x = cx - reach; x <= cx + reach; x++) {
       float dx = (float)x - c->x, dy = (float)y - c->y;
-      if (!rc_inside(a->width, a->height, x, y) || dx * dx + dy * dy > FOLLOWED_PX * FOLLOWED_PX)
-        continue;
-      size_t at = (size_t)y * (size_t)a->width + (size_t)x;
-      int label = a->from_hole[at] ? f->label[at] : 0;
-      if (!label || !(differ(f, x - 1, y, label) || differ(f, x + 1, y, label) ||
-                      differ(f, x, y - 1, label) || differ(f, x, y + 1, label)))
-        continue;
+      if (dx * dx + dy * dy > FOLLOWED_PX * FOLLOWED_PX || !on_edge(f, x, y)) continue;
       c->ux += dx, c->uy += dy;
     }
   float length = sqrtf(c->ux * c->ux + c->uy * c->uy);
@@ -143,9 +150,40 @@ static bool cross(const rc_change *a, const rc_change *b, const rc_change *p, co
          side_of_chord(p, q, a) * side_of_chord(p, q, b) < 0;
 }
 
+/* The straight line that an edge follows for longer, from its direction so far: what lies in a
+ * narrow wedge along that. x, y: a place on it. */
+static rc_change straight_edge(const finder *f, const rc_change *c) {
+  int reach = (int)STRAIGHT_PX;
+  rc_change line = *c;
+  for (int round = 0; round < 2; round++) {
+    double sum = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+    for (int j = -reach; j <= reach; j++)
+      for (int i = -reach; i <= reach; i++) {
+        int px = (int)(c->x + .5f) + i, py = (int)(c->y + .5f) + j;
+        float dx = (float)px - line.x, dy = (float)py - line.y;
+        float along = ((float)px - c->x) * line.ux + ((float)py - c->y) * line.uy;
+        float across = fabsf(dx * line.uy - dy * line.ux);
+        if (along < 0 || along > STRAIGHT_PX || across > WEDGE_PX + WEDGE * along) continue;
+        if (!on_edge(f, px, py)) continue;
+        sum++, x += px, y += py, xx += px * px, xy += px * py, yy += py * py;
+      }
+    if (sum < 2) return line;
+    x /= sum, y /= sum, xx = xx / sum - x * x, xy = xy / sum - x * y, yy = yy / sum - y * y;
+    /* The greater axis of what they spread by. */
+    double root = sqrt((xx - yy) * (xx - yy) / 4 + xy * xy), great = (xx + yy) / 2 + root;
+    double ux = xx > yy ? great - yy : xy, uy = xx > yy ? xy : great - xx;
+    double length = sqrt(ux * ux + uy * uy);
+    if (!(length > 0)) return line;
+    if (ux * (double)c->ux + uy * (double)c->uy < 0) length = -length;
+    line = (rc_change){(float)x, (float)y, (float)(ux / length), (float)(uy / length)};
+  }
+  return line;
+}
+
 /* Whether both edges, going straight on, meet in the hole at something like a right angle. */
-static bool make_a_corner(const finder *f, const rc_change *a, const rc_change *b,
+static bool make_a_corner(const finder *f, const rc_change *from, const rc_change *to,
                           rc_change *corner) {
+  rc_change edges[2] = {straight_edge(f, from), straight_edge(f, to)}, *a = edges, *b = edges + 1;
   float sine = a->ux * b->uy - a->uy * b->ux, dx = a->x - b->x, dy = a->y - b->y;
   if (fabsf(sine) < LEAST_SINE) return false;
   float s = (dx * b->uy - dy * b->ux) / sine, t = (dx * a->uy - dy * a->ux) / sine;
