@@ -131,8 +131,8 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
   int from = e->params->engine_lines ? rc_lines_level(e->flags, e->level_count) : -1;
   if (from < 0) return RECEDE_OK;
   for (int n = from; n < e->level_count && n <= from + 1 && !e->line_count; n++)
-    RC_TRY(rc_lines_find(context, &e->images[n], &e->flags[n], n, n > from, &e->chart, e->lines,
-                         &e->line_count));
+    RC_TRY(rc_lines_find(context, &e->images[n], &e->flags[n], n, n > from, e->due, &e->chart,
+                         e->lines, &e->line_count));
   rc_dash_rows_drop_lines(dashes, e->lines, &e->line_count);
   /* Where there are dashes it is they that repeat, not what the lines lie on. */
   RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, !dashes->count,

@@ -18,6 +18,8 @@
 /* Edges that meet in a corner do so at 40 to 140 degrees, and count as so much. */
 #define LEAST_SINE .64f
 #define TURN_OF_CORNER .25f
+/* Two that cross together turn by no more. */
+#define MOST_TURN_OF_CROSSING .1f
 /* Where they do is told by so much of them, that lies in a wedge which begins with so many px to
  * each side and gets wider by so much. */
 #define STRAIGHT_PX 20.f
@@ -227,30 +229,44 @@ static bool opens(const finder *f, const rc_change *a, const rc_change *b, const
          rc_apart(&to[0], &to[1]) > MOST_OPENING * rc_apart(&from[0], &from[1]);
 }
 
-/* Adds a straight piece. False: it crosses another, or leaves the picture and opens from one. */
-static bool add_piece(const finder *f, rc_chords *to, const rc_change *a, const rc_change *b,
-                      bool leaves) {
-  rc_change *next = to->end[to->piece_count];
-  for (int i = 0; i < to->piece_count; i++)
-    if (cross(a, b, &to->end[i][0], &to->end[i][1]) ||
-        (leaves && opens(f, a, b, &to->end[i][0], &to->end[i][1])))
-      return false;
+static bool crosses(const rc_chords *chords, const rc_change *a, const rc_change *b) {
+  for (int i = 0; i < chords->piece_count; i++)
+    if (cross(a, b, &chords->end[i][0], &chords->end[i][1])) return true;
+  return false;
+}
+
+static void add_piece(rc_chords *to, const rc_change *a, const rc_change *b) {
+  rc_change *next = to->end[to->piece_count++];
   next[0] = *a, next[1] = *b;
-  to->piece_count++;
+}
+
+/* A straight chord. Two may cross, as on a chess board: of what is around them every other part has
+ * the same label. False: they cross, but not as straight edges would. */
+static bool add_chord(rc_chords *to, const rc_change *a, const rc_change *b) {
+  to->count++, to->turn += turn(a, b);
+  if (crosses(to, a, b) && to->turn > MOST_TURN_OF_CROSSING) return false;
+  add_piece(to, a, b);
   return true;
 }
 
-static bool add_chord(const finder *f, rc_chords *to, const rc_change *a, const rc_change *b,
-                      bool leaves, float turned) {
-  to->count++, to->turn += turned;
-  return add_piece(f, to, a, b, leaves);
+/* One that leaves the picture. False: it crosses another, or opens from one. */
+static bool add_leaving_chord(const finder *f, rc_chords *to, const rc_change *a,
+                              const rc_change *b) {
+  if (crosses(to, a, b)) return false;
+  for (int i = 0; i < to->piece_count; i++)
+    if (opens(f, a, b, &to->end[i][0], &to->end[i][1])) return false;
+  to->count++, to->turn += TURN_OF_LEAVING;
+  add_piece(to, a, b);
+  return true;
 }
 
-/* One that turns in a corner. */
-static bool add_bent_chord(const finder *f, rc_chords *to, const rc_change *a, const rc_change *b,
+/* One that turns in a corner. False: it crosses another. */
+static bool add_bent_chord(rc_chords *to, const rc_change *a, const rc_change *b,
                            const rc_change *corner) {
+  if (crosses(to, a, corner) || crosses(to, corner, b)) return false;
   to->count++, to->turn += TURN_OF_CORNER;
-  return add_piece(f, to, a, corner, false) && add_piece(f, to, corner, b, false);
+  add_piece(to, a, corner), add_piece(to, corner, b);
+  return true;
 }
 
 /* Tries all ways to pair up the changes that are not taken, or to lead them out of the picture. */
@@ -264,19 +280,19 @@ static void pair_up(const finder *f, const rc_change *c, int count, unsigned tak
     return;
   }
   rc_chords with = *sofar;
-  if (leaves_the_picture(f, &c[i], &out) && add_chord(f, &with, &c[i], &out, true, TURN_OF_LEAVING))
+  if (leaves_the_picture(f, &c[i], &out) && add_leaving_chord(f, &with, &c[i], &out))
     pair_up(f, c, count, taken | 1u << i, &with, best);
   for (int k = i + 1; k < count; k++) {
     unsigned both = taken | 1u << i | 1u << k;
     rc_change corner;
     if (taken >> k & 1) continue;
     with = *sofar;
-    if (make_a_corner(f, &c[i], &c[k], &corner) &&
-        add_bent_chord(f, &with, &c[i], &c[k], &corner))
+    /* Of more edges it is not told which two make a corner. */
+    if (count == 2 && make_a_corner(f, &c[i], &c[k], &corner) &&
+        add_bent_chord(&with, &c[i], &c[k], &corner))
       pair_up(f, c, count, both, &with, best);
     with = *sofar;
-    if (turn(&c[i], &c[k]) <= MOST_TURN &&
-        add_chord(f, &with, &c[i], &c[k], false, turn(&c[i], &c[k])))
+    if (turn(&c[i], &c[k]) <= MOST_TURN && add_chord(&with, &c[i], &c[k]))
       pair_up(f, c, count, both, &with, best);
   }
 }

@@ -339,7 +339,7 @@ recede_status rc_lines_at(rc_context *context, const rc_seen *seen,
 }
 
 recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc_mask *mask,
-                            int exponent, bool corners, const rc_chart *chart,
+                            int exponent, bool corners, bool regular, const rc_chart *chart,
                             rc_crossing lines[RC_MOST_LINES], int *count) {
   static const float grey[3] = {1, 0, 0}, colours[3] = {.3f, .59f, .11f};
   const float *axis = image->channels == 1 ? grey : colours;
@@ -350,7 +350,7 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
   if (corners) rc_crossings_keep_corners(mask, lines, count);
   rc_chart here = rc_chart_coarser(*chart, exponent);
   int reach_px = rc_longer_side(rc_box_of(mask, RC_TARGET));
-  for (int i = 0; i < *count; i++)
+  for (int i = 0; i < *count && !regular; i++)
     lines[i].alone = rc_stands_alone(&seen, &here, &lines[i], reach_px);
   rc_crossings_keep_parallel(&here, lines, count);
   follow(&seen, &here, exponent, lines, count);
