@@ -18,8 +18,10 @@
 /* Edges that meet in a corner do so at 40 to 140 degrees, and count as so much. */
 #define LEAST_SINE .64f
 #define TURN_OF_CORNER .25f
-/* Two that cross together turn by no more. */
+/* Two that cross together turn by no more, and count as so much more: both edges of a kerb may be
+ * paired up crosswise, too. */
 #define MOST_TURN_OF_CROSSING .1f
+#define PRICE_OF_CROSSING .4f
 /* Where they do is told by so much of them, that lies in a wedge which begins with so many px to
  * each side and gets wider by so much. */
 #define STRAIGHT_PX 20.f
@@ -244,7 +246,10 @@ static void add_piece(rc_chords *to, const rc_change *a, const rc_change *b) {
  * the same label. False: they cross, but not as straight edges would. */
 static bool add_chord(rc_chords *to, const rc_change *a, const rc_change *b) {
   to->count++, to->turn += turn(a, b);
-  if (crosses(to, a, b) && to->turn > MOST_TURN_OF_CROSSING) return false;
+  if (crosses(to, a, b)) {
+    if (to->turn > MOST_TURN_OF_CROSSING) return false;
+    to->turn += PRICE_OF_CROSSING;
+  }
   add_piece(to, a, b);
   return true;
 }
