@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "synthesis/structure/axes.h"
 #include "synthesis/structure/follow.h"
 #include "synthesis/structure/repeats.h"
 
@@ -23,7 +24,6 @@
 #define MARKED_BESIDE_PX 1
 #define LEAST_SEEN 8
 #define LEAST_STEP 1.f
-#define POWER_STEPS 30
 /* Others are looked for so far to each side of the line, no nearer than strips reach, and lie in
  * the middle of where their step is this part of its greatest. */
 #define LEAST_BESIDE_PX 4
@@ -86,38 +86,6 @@ static float step_across(const coarsest *in, const rc_crossing *c, int from) {
   return sum;
 }
 
-/* The sources' covariance of colours; grey has one. */
-static void covariance_of(const rc_image *image, const rc_mask *flags, double covariance[3][3]) {
-  double mean[3] = {0, 0, 0}, count = 0;
-  memset(covariance, 0, 9 * sizeof(double));
-  for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++) {
-    const float *v = image->data + i * (size_t)image->channels;
-    if (!(flags->data[i] & RC_SOURCE)) continue;
-    for (int k = 0; k < image->channels; k++) {
-      mean[k] += v[k];
-      for (int j = 0; j < image->channels; j++) covariance[k][j] += (double)v[k] * v[j];
-    }
-    count++;
-  }
-  for (int k = 0; k < 3 && count > 0; k++)
-    for (int j = 0; j < 3; j++)
-      covariance[k][j] = (covariance[k][j] - mean[k] * mean[j] / count) / count;
-}
-
-/* What colours differ by most, by the power method: grass and brick may be equally bright. */
-static void principal_axis(double covariance[3][3], float axis[3]) {
-  double v[3] = {.3, .59, .11};
-  for (int step = 0; step < POWER_STEPS; step++) {
-    double next[3] = {0, 0, 0}, square = 0;
-    for (int k = 0; k < 3; k++) {
-      for (int j = 0; j < 3; j++) next[k] += covariance[k][j] * v[j];
-      square += next[k] * next[k];
-    }
-    for (int k = 0; k < 3 && square > 0; k++) v[k] = next[k] / sqrt(square);
-  }
-  for (int k = 0; k < 3; k++) axis[k] = (float)v[k];
-}
-
 /* The line with the greatest step among those that go on by themselves; false: there is none. */
 static bool choose(const coarsest *in, int coarser, const rc_seen *seen, const rc_chart *chart,
                    float least, const rc_crossing *lines, int count, rc_crossing *best) {
@@ -169,8 +137,8 @@ static void find_beside(const coarsest *in, float least, const rc_crossing *line
   float steps[2 * MOST_BESIDE_PX + 1];
   rc_crossing moved;
   for (int k = 0; k <= 2 * MOST_BESIDE_PX; k++)
-    steps[k] = move_across(in, line, (float)(k - MOST_BESIDE_PX), &moved) ? step_across(in, &moved, 0)
-                                                                          : 0;
+    steps[k] =
+        move_across(in, line, (float)(k - MOST_BESIDE_PX), &moved) ? step_across(in, &moved, 0) : 0;
   while (sides->boundary_count < RC_MOST_BOUNDARIES) {
     int most = 0, low, high;
     float sum = 0, place = 0;
@@ -178,8 +146,11 @@ static void find_beside(const coarsest *in, float least, const rc_crossing *line
       if (abs(k - MOST_BESIDE_PX) >= LEAST_BESIDE_PX && steps[k] > steps[most]) most = k;
     if (abs(most - MOST_BESIDE_PX) < LEAST_BESIDE_PX || steps[most] < least) return;
     for (low = most; low > 0 && steps[low - 1] > PART_OF_PEAK * steps[most]; low--) continue;
-    for (high = most; high < 2 * MOST_BESIDE_PX && steps[high + 1] > PART_OF_PEAK * steps[most]; high++) continue;
-    for (int k = low; k <= high; k++) sum += steps[k], place += steps[k] * (float)(k - MOST_BESIDE_PX);
+    for (high = most; high < 2 * MOST_BESIDE_PX && steps[high + 1] > PART_OF_PEAK * steps[most];
+         high++)
+      continue;
+    for (int k = low; k <= high; k++)
+      sum += steps[k], place += steps[k] * (float)(k - MOST_BESIDE_PX);
     bool own = low <= MOST_BESIDE_PX && high >= MOST_BESIDE_PX;
     for (int k = low - LEAST_BESIDE_PX; k <= high + LEAST_BESIDE_PX; k++)
       if (k >= 0 && k <= 2 * MOST_BESIDE_PX) steps[k] = 0;
@@ -199,26 +170,31 @@ static recede_status search(rc_context *context, const rc_image *images, const r
                             rc_sides *sides) {
   int last = levels - 1, count;
   coarsest in = {&images[last], &masks[last], rc_chart_coarser(*chart, last), .marking_count = 0};
-  double covariance[3][3];
+  rc_covariance far = rc_covariance_of(in.image, in.flags);
+  int ways = in.image->channels == 1 ? 1 : 2;
   rc_crossing lines[RC_MOST_LINES], best;
   *found = false;
   for (int i = 0; i < before_count; i++)
     if (rc_crossing_is_sure(&before[i]))
       in.markings[in.marking_count++] = rc_crossing_coarser(before[i], last);
-  covariance_of(&images[last], &masks[last], covariance);
-  float least = LEAST_STEP * (float)(covariance[0][0] + covariance[1][1] + covariance[2][2]);
+  float least = LEAST_STEP * (float)rc_covariance_trace(&far);
   for (int exponent = from + LEAST_COARSER;
        exponent <= from + MOST_COARSER && exponent < levels && !*found; exponent++) {
     rc_seen seen;
     rc_chart here = rc_chart_coarser(*chart, exponent);
     if (rc_border_length(&masks[exponent]) < LEAST_BORDER) return RECEDE_OK;
-    rc_block *mark = rc_mark(context);
-    covariance_of(&images[exponent], &masks[exponent], covariance);
-    principal_axis(covariance, line->axis);
-    RC_TRY(rc_see(context, &images[exponent], &masks[exponent], line->axis, &seen));
-    RC_TRY(rc_lines_at(context, &seen, lines, &count));
-    *found = choose(&in, last - exponent, &seen, &here, least, lines, count, &best);
-    rc_release(context, mark);
+    rc_covariance all = rc_covariance_of(&images[exponent], &masks[exponent]);
+    for (int way = 0; way < ways && !*found; way++) {
+      rc_block *mark = rc_mark(context);
+      if (way == 0)
+        rc_principal_axis(&all, line->axis);
+      else
+        rc_telling_axis(&all, &far, line->axis);
+      RC_TRY(rc_see(context, &images[exponent], &masks[exponent], line->axis, &seen));
+      RC_TRY(rc_lines_at(context, &seen, lines, &count));
+      *found = choose(&in, last - exponent, &seen, &here, least, lines, count, &best);
+      rc_release(context, mark);
+    }
     if (!*found) continue;
     memcpy(best.axis, line->axis, sizeof best.axis);
     *line = rc_crossing_coarser(best, -exponent);
@@ -242,8 +218,8 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
   int kept_count = 0;
   rc_sides sought = {.boundary_count = 0};
   sides->boundary_count = 0;
-  RC_TRY(search(context, images, masks, levels, from, chart, lines, *count, &line, &apart_px, &found,
-                &sought));
+  RC_TRY(search(context, images, masks, levels, from, chart, lines, *count, &line, &apart_px,
+                &found, &sought));
   rc_copy direction = found ? rc_crossing_direction(chart, &line) : (rc_copy){0, 0, 0};
   if (!found || rc_parallel_in_plane(direction, (rc_copy){rails->a, rails->b, 0})) return RECEDE_OK;
   const rc_boundary *between = &sought.boundaries[0];

@@ -193,8 +193,8 @@ static bool keep_lines_straight(const rc_chart *chart, const rc_crossing *lines,
 }
 
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
-                            int levels, const rc_chart *chart, bool may_repeat,
-                            rc_crossing *lines, int *count, rc_rails *rails) {
+                            int levels, const rc_chart *chart, bool may_repeat, rc_crossing *lines,
+                            int *count, rc_rails *rails) {
   int coarse = levels - 1, fine = coarse > FINER_BY ? coarse - FINER_BY : 0;
   const rc_mask *flags = &masks[coarse];
   rc_chart here = rc_chart_coarser(*chart, coarse);

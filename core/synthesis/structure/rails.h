@@ -48,8 +48,8 @@ rc_copy rc_copy_on_rails(const rc_rails *rails, const rc_chart *chart, float tol
  * them. may_repeat: *count becomes 0 where, beside the hole, it repeats. images and masks: the
  * pyramid's levels, finest first; chart: of the finest. */
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
-                            int levels, const rc_chart *chart, bool may_repeat,
-                            rc_crossing *lines, int *count, rc_rails *rails);
+                            int levels, const rc_chart *chart, bool may_repeat, rc_crossing *lines,
+                            int *count, rc_rails *rails);
 
 /* Whether the texture runs along the rails on both sides of the boundary, px of the finest level.
  */
