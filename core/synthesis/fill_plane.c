@@ -131,9 +131,11 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
   int from = e->params->engine_lines ? rc_lines_level(e->flags, e->level_count) : -1;
   if (from < 0) return RECEDE_OK;
   for (int n = from; n < e->level_count && n <= from + 1 && !e->line_count; n++)
-    RC_TRY(rc_lines_find(context, &e->images[n], &e->flags[n], n, n > from, e->due, &e->chart,
-                         e->lines, &e->line_count));
+    RC_TRY(rc_lines_find(context, &e->images[n], &e->flags[n], n, n > from, &e->chart,
+                         e->due ? e->due_by : NULL, e->lines, &e->line_count));
   rc_dash_rows_drop_lines(dashes, e->lines, &e->line_count);
+  /* A rail does not come again where its sleepers do. */
+  for (int i = 0; i < e->line_count; i++) e->due = e->due && !rc_crossing_is_lone(&e->lines[i]);
   /* Where there are dashes it is they that repeat, not what the lines lie on. */
   RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, !dashes->count,
                        e->lines, &e->line_count, &e->rails));
@@ -173,7 +175,7 @@ static recede_status find_due(rc_context *context, const rc_problem *problem, rc
     return RECEDE_OK;
   return rc_is_due(context, e->images, e->flags, e->level_count, &flat,
                    byte_gain(&e->images[0], &problem->flags),
-                   rc_key((uint64_t)e->params->seed, 95, 0), &e->due);
+                   rc_key((uint64_t)e->params->seed, 95, 0), &e->due, e->due_by);
 }
 
 /* Two textures in the hole that no line tells apart, or of which one has two edges. */

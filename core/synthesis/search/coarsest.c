@@ -300,7 +300,8 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   if (e->params->engine_lattice)
     RC_TRY(rc_lattice_find(context, level, e->periods.copies, e->periods.count, &e->bends,
                            &e->lattice));
-  if (!e->params->engine_regular || e->params->surface == RECEDE_SURFACE_RAISED)
+  bool lone = e->line_count && rc_crossing_is_lone(&e->lines[0]);
+  if (!e->params->engine_regular || e->params->surface == RECEDE_SURFACE_RAISED || lone)
     e->periods.regular = e->periods.due = false;
   /* Also where traits tell what brightness did not: beside a square lies another one. */
   if (e->periods.due) rc_conditions_forget_kin(&e->conditions);

@@ -13,7 +13,8 @@
 #define WIDEST 2.f
 
 recede_status rc_is_due(rc_context *context, const rc_image *images, const rc_mask *flags,
-                        int levels, const rc_chart *chart, float gain, uint64_t key, bool *due) {
+                        int levels, const rc_chart *chart, float gain, uint64_t key, bool *due,
+                        rc_copy by[2]) {
   rc_chart coarse = rc_chart_coarser(*chart, levels - 1);
   rc_traits none = {0};
   rc_periods periods;
@@ -24,6 +25,10 @@ recede_status rc_is_due(rc_context *context, const rc_image *images, const rc_ma
   RC_TRY(rc_level_see(context, &images[levels - 1], &none, 1.f, gain, true, &level));
   RC_TRY(rc_find_periods(context, &level, key, RC_REGULAR_POINTS, &periods));
   *due = periods.due;
+  for (int k = 0; k < 2; k++) {
+    float px = (float)(1 << (levels - 1));
+    by[k] = (rc_copy){px * periods.base[k].a, px * periods.base[k].b, 0.f};
+  }
   rc_release(context, mark);
   return rc_poll(context);
 }

@@ -11,18 +11,19 @@
 #define MOST_UNLIKE 2.f
 /* So many may: there are two kerbs and two rails. Of bricks, tiles and boards 3 to 15 do. */
 #define MOST_AGAIN 1
+/* Of the angle between a line and a period that leads away from it. */
+#define LEAST_SINE .3f
 
 typedef struct beside {
   const rc_seen *picture;
   const rc_crossing *line;
   rc_chart flat;
-  rc_copy across; /* a unit vector in the plane */
+  rc_copy along; /* its direction in the plane, a unit vector */
 } beside;
 
-/* Of the line moved across by so much, at its end b or, outwards being -1, a. */
-static bool profile_of(const beside *at, float moved, float outwards, rc_profile *profile) {
+/* Of the line so moved, at its end b or, outwards being -1, a. */
+static bool profile_of(const beside *at, rc_copy move, float outwards, rc_profile *profile) {
   const rc_crossing *c = at->line;
-  rc_copy move = {moved * at->across.a, moved * at->across.b, 0};
   rc_place a = rc_copy_place(&at->flat, move, c->ax - at->flat.x0, c->ay - at->flat.y0);
   rc_place b = rc_copy_place(&at->flat, move, c->bx - at->flat.x0, c->by - at->flat.y0);
   const rc_place *end = outwards < 0 ? &a : &b;
@@ -43,20 +44,41 @@ static int count_again(const beside *at, float outwards, float px, int reach_px)
   rc_profile own, other;
   int count = 0;
   bool before = false;
-  if (!profile_of(at, 0, outwards, &own)) return 0;
+  if (!profile_of(at, (rc_copy){0, 0, 0}, outwards, &own)) return 0;
   for (int k = -reach_px; k <= reach_px; k++) {
-    bool again = (k < -RC_PROFILE || k > RC_PROFILE) &&
-                 profile_of(at, (float)k * px, outwards, &other) && alike(&own, &other);
+    float across = (float)k * px;
+    rc_copy move = {-across * at->along.b, across * at->along.a, 0};
+    bool again = (k < -RC_PROFILE || k > RC_PROFILE) && profile_of(at, move, outwards, &other) &&
+                 alike(&own, &other);
     count += again && !before;
     before = again;
   }
   return count;
 }
 
+/* Whether a period that leads away from the line leads to one that looks the same, or out of what is
+ * known. */
+static bool comes_again_by(const beside *at, rc_copy period) {
+  float length = sqrtf(period.a * period.a + period.b * period.b);
+  int seen = 0;
+  if (fabsf(period.a * at->along.b - period.b * at->along.a) < LEAST_SINE * length) return true;
+  for (int n = 0; n < 4; n++) {
+    float sign = n % 2 ? 1 : -1, outwards = n / 2 ? 1 : -1;
+    rc_copy move = {sign * period.a, sign * period.b, 0};
+    rc_profile own, other;
+    if (!profile_of(at, (rc_copy){0, 0, 0}, outwards, &own) ||
+        !profile_of(at, move, outwards, &other))
+      continue;
+    if (alike(&own, &other)) return true;
+    seen++;
+  }
+  return !seen;
+}
+
 bool rc_stands_alone(const rc_seen *picture, const rc_chart *chart, const rc_crossing *line,
-                     int reach_px) {
-  rc_copy along = rc_crossing_direction(chart, line);
-  beside at = {picture, line, rc_chart_flat(*chart), {-along.b, along.a, 0}};
+                     int reach_px, const rc_copy periods[2]) {
+  beside at = {picture, line, rc_chart_flat(*chart), rc_crossing_direction(chart, line)};
+  if (periods && comes_again_by(&at, periods[0]) && comes_again_by(&at, periods[1])) return false;
   float a = rc_chart_w(chart, line->ax, line->ay), b = rc_chart_w(chart, line->bx, line->by);
   if (!(a > 0 && b > 0)) return false;
   return count_again(&at, -1, 1 / a, reach_px) <= MOST_AGAIN &&

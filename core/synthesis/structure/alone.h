@@ -6,8 +6,9 @@
 #include "synthesis/structure/lines.h"
 
 /* Looks so many px to each side of either end for parallel lines of the plane that look the same.
- * chart: of the same level. */
+ * periods: two by which the texture seems to come again, and then the line must not; NULL: it does
+ * not seem to. All is of the same level. */
 bool rc_stands_alone(const rc_seen *picture, const rc_chart *chart, const rc_crossing *line,
-                     int reach_px);
+                     int reach_px, const rc_copy periods[2]);
 
 #endif

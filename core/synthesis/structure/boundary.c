@@ -208,6 +208,16 @@ static recede_status search(rc_context *context, const rc_image *images, const r
   return RECEDE_OK;
 }
 
+/* A sleeper's edge may step as a boundary does, but the rail across it is certain. */
+static bool crosses_a_lone_line(const rc_chart *chart, rc_copy direction, const rc_crossing *lines,
+                                int count) {
+  for (int i = 0; i < count; i++)
+    if (rc_crossing_is_lone(&lines[i]) && lines[i].strength >= RC_CLEAR_STRENGTH &&
+        !rc_parallel_in_plane(direction, rc_crossing_direction(chart, &lines[i])))
+      return true;
+  return false;
+}
+
 recede_status rc_boundary_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                                int levels, int from, const rc_chart *chart,
                                rc_crossing lines[RC_MOST_LINES], int *count, rc_rails *rails,
@@ -225,6 +235,7 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
   const rc_boundary *between = &sought.boundaries[0];
   RC_TRY(rc_runs_on_both_sides(context, images, masks, levels, chart, rails, between, &boards));
   if (boards) return RECEDE_OK; /* light and dark boards' ends in a row */
+  if (crosses_a_lone_line(chart, direction, lines, *count)) return RECEDE_OK;
   *rails = (rc_rails){0};
   *sides = sought;
   for (int i = 0; i < *count; i++) {

@@ -1,0 +1,152 @@
+/* Straight edges between things that lie side by side go on through the hole: both of a kerb, those
+ * of a rail across its sleepers, a corner of paint, the crossing of four squares. What is bright is
+ * looked at. */
+#include <math.h>
+
+#include "plane_scene.h"
+
+#define WIDTH 640
+#define HEIGHT 480
+#define TEXEL_PX 20.
+#define BRIGHT .9
+
+/* How the edges lie: u and v are turned by this, and moved. */
+static double cosine, sine, moved_u, moved_v;
+
+static double grain(double u, double v, int n) {
+  return .06 * smooth_noise(u, v, 6, n) + .06 * smooth_noise(u, v, 12, n + 1);
+}
+
+/* Of slabs or setts in rows, every other of which is half one off: 1 at a joint. */
+static bool at_joint(double u, double v, double length, double width, double joint, double *shade) {
+  double column = floor(u / length), along = v / width + .5 * fmod(fabs(column), 2);
+  double in_u = u - column * length, in_v = (along - floor(along)) * width;
+  *shade = noise_at((int)column, (int)floor(along), 7);
+  return in_u < joint || in_v < joint;
+}
+
+static double pavement(double u, double v) {
+  double shade;
+  return at_joint(u, v, 6, 4, .15, &shade) ? .2 : .38 + .08 * shade + grain(u, v, 20);
+}
+
+static double setts(double u, double v) {
+  double shade;
+  return at_joint(u, v, 1.2, 1.6, .25, &shade) ? .08 : .2 + .2 * shade + grain(u, v, 30);
+}
+
+static double asphalt(double u, double v) { return .2 + 2 * grain(u, v, 40); }
+
+static double kerb_before(double u, double v, double road) {
+  if (u < 0) return pavement(u, v);
+  return u < 2 ? BRIGHT + .3 * grain(u, v, 50) : road;
+}
+
+static double asphalt_street(double u, double v) { return kerb_before(u, v, asphalt(u, v)); }
+static double setts_street(double u, double v) { return kerb_before(u, v, setts(u, v)); }
+
+static double railway(double u, double v) {
+  double along = v / 5 - floor(v / 5);
+  if (fabs(u) < .35) return BRIGHT;
+  if (fabs(u) < .7) return .15;
+  return along < .4 ? .4 + .5 * grain(u, 6 * v, 60) : .25 + 3 * grain(u, v, 70);
+}
+
+static double crossing(double u, double v) {
+  double bar = u / 14 - floor(u / 14);
+  return bar < .5 && v > 0 ? BRIGHT + .3 * grain(u, v, 80) : asphalt(u, v);
+}
+
+static double squares(double u, double v) {
+  bool bright = ((int)floor(u / 14) + (int)floor(v / 14)) % 2 == 0;
+  return bright ? BRIGHT + .3 * grain(u, v, 90) : .25 + grain(u, v, 100);
+}
+
+static double (*ground)(double u, double v);
+static double draw(double u, double v, int k) {
+  (void)k;
+  return ground(cosine * u - sine * v + moved_u, sine * u + cosine * v + moved_v);
+}
+
+typedef struct scene {
+  double (*ground)(double u, double v);
+  double slant_deg, tilt_deg, direction_deg, u, v; /* what is in the picture's middle */
+  area hole;
+} scene;
+
+static double right_of(const scene *s, bool round) {
+  ground = s->ground, moved_u = s->u, moved_v = s->v;
+  cosine = cos(s->direction_deg * G_PI / 180), sine = sin(s->direction_deg * G_PI / 180);
+  picture truth =
+      picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, draw, TEXEL_PX, s->slant_deg, s->tilt_deg);
+  task t = task_new(picture_copy(&truth), "quality=draft");
+  t.params.slant_deg = s->slant_deg, t.params.tilt_deg = s->tilt_deg;
+  if (round)
+    task_round_hole(&t, s->hole);
+  else
+    task_hole(&t, s->hole);
+  task_succeeds(&t);
+  task_assert_outside(&t);
+  paint p = task_paint(&t, &truth, s->hole);
+  task_clear(&t);
+  picture_clear(&truth);
+  g_test_message("slant %.0f, tilt %.0f, direction %.0f, %s hole at %d,%d: %.0f of %.0f px, %.2f",
+                 s->slant_deg, s->tilt_deg, s->direction_deg, round ? "round" : "square",
+                 s->hole.x0, s->hole.y0, p.right, p.all, p.right / p.all);
+  return p.right / p.all;
+}
+
+static void go_on(const scene *scenes, int count, double least) {
+  double sum = 0;
+  for (int i = 0; i < count; i++) sum += right_of(&scenes[i], false) + right_of(&scenes[i], true);
+  g_test_message("together %.3f", sum / (2 * count));
+  if (!g_getenv("NOASSERT")) g_assert_cmpfloat(sum / (2 * count), >, least);
+}
+
+#define MIDDLE \
+  { 240, 180, 400, 300 }
+
+static void kerbs(void) {
+  static const scene scenes[] = {
+      {asphalt_street, 55, 0, 10, 1, 0, MIDDLE},
+      {asphalt_street, 60, 5, -25, .5, 0, MIDDLE},
+      {setts_street, 55, -5, 10, 1.5, 0, MIDDLE},
+      {setts_street, 60, 0, -20, 1, 0, MIDDLE},
+  };
+  go_on(scenes, G_N_ELEMENTS(scenes), .9);
+}
+
+static void rails(void) {
+  static const scene scenes[] = {
+      {railway, 60, 0, 15, 0, 0, MIDDLE},
+      {railway, 55, 0, -30, .5, 0, MIDDLE},
+      {railway, 65, 5, 5, -.5, 0, MIDDLE},
+  };
+  go_on(scenes, G_N_ELEMENTS(scenes), .9);
+}
+
+static void corners(void) {
+  static const scene scenes[] = {
+      {crossing, 50, 0, 15, 6, 1, MIDDLE},
+      {crossing, 60, -10, -20, 7, -1, MIDDLE},
+      {crossing, 40, 20, 40, 0, 1, MIDDLE},
+  };
+  go_on(scenes, G_N_ELEMENTS(scenes), .9);
+}
+
+static void crossings(void) {
+  static const scene scenes[] = {
+      {squares, 45, 0, 20, 0, 0, MIDDLE},
+      {squares, 55, 10, 30, 1, 1, MIDDLE},
+  };
+  go_on(scenes, G_N_ELEMENTS(scenes), .9);
+}
+
+int main(int argc, char **argv) {
+  g_test_init(&argc, &argv, NULL);
+  g_test_add_func("/edges/kerbs", kerbs);
+  g_test_add_func("/edges/rails", rails);
+  g_test_add_func("/edges/corners", corners);
+  g_test_add_func("/edges/crossings", crossings);
+  return g_test_run();
+}
