@@ -297,10 +297,11 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   rc_trial best;
   if (e->params->engine_periods)
     RC_TRY(rc_find_periods(context, level, key, RC_PERIOD_POINTS, &e->periods));
-  if (e->params->engine_lattice)
+  /* What stands alone comes again in no lattice. */
+  bool lone = e->line_count && rc_crossing_is_lone(&e->lines[0]);
+  if (e->params->engine_lattice && !lone)
     RC_TRY(rc_lattice_find(context, level, e->periods.copies, e->periods.count, &e->bends,
                            &e->lattice));
-  bool lone = e->line_count && rc_crossing_is_lone(&e->lines[0]);
   if (!e->params->engine_regular || e->params->surface == RECEDE_SURFACE_RAISED || lone)
     e->periods.regular = e->periods.due = false;
   /* Also where traits tell what brightness did not: beside a square lies another one. */
