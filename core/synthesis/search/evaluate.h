@@ -13,8 +13,8 @@
 /* A raised copy may be off by its scale step and a little more. */
 #define RC_MOST_MISMATCH 1.1f
 
-/* And of a source on another side than the target, per square of what their sides differ by, 4 at
- * the most. */
+/* And of a source on another side than the target, per square of what their sides differ by: 4
+ * at the most, where there are two. */
 #define RC_PRICE_SIDE 6.f
 
 #define RC_NO_COST 1e30f

@@ -39,8 +39,8 @@ static bool alike(const rc_profile *p, const rc_profile *q) {
   return rc_profile_dot(p, q) > LEAST_LIKENESS * sqrtf(pp * qq) && pp < most * qq && qq < most * pp;
 }
 
-/* How often it comes again, in places next to one another once. */
-static int count_again(const beside *at, float outwards, float px, int reach_px) {
+/* How often it comes again, in places next to one another once; and how many were seen. */
+static int count_again(const beside *at, float outwards, float px, int reach_px, int *seen) {
   rc_profile own, other;
   int count = 0;
   bool before = false;
@@ -48,16 +48,16 @@ static int count_again(const beside *at, float outwards, float px, int reach_px)
   for (int k = -reach_px; k <= reach_px; k++) {
     float across = (float)k * px;
     rc_copy move = {-across * at->along.b, across * at->along.a, 0};
-    bool again = (k < -RC_PROFILE || k > RC_PROFILE) && profile_of(at, move, outwards, &other) &&
-                 alike(&own, &other);
-    count += again && !before;
+    bool known = (k < -RC_PROFILE || k > RC_PROFILE) && profile_of(at, move, outwards, &other);
+    bool again = known && alike(&own, &other);
+    *seen += known, count += again && !before;
     before = again;
   }
   return count;
 }
 
-/* Whether a period that leads away from the line leads to one that looks the same, or out of what is
- * known. */
+/* Whether a period that leads away from the line leads to one that looks the same, or out of what
+ * is known. */
 static bool comes_again_by(const beside *at, rc_copy period) {
   float length = sqrtf(period.a * period.a + period.b * period.b);
   int seen = 0;
@@ -80,7 +80,8 @@ bool rc_stands_alone(const rc_seen *picture, const rc_chart *chart, const rc_cro
   beside at = {picture, line, rc_chart_flat(*chart), rc_crossing_direction(chart, line)};
   if (periods && comes_again_by(&at, periods[0]) && comes_again_by(&at, periods[1])) return false;
   float a = rc_chart_w(chart, line->ax, line->ay), b = rc_chart_w(chart, line->bx, line->by);
+  int seen = 0;
   if (!(a > 0 && b > 0)) return false;
-  return count_again(&at, -1, 1 / a, reach_px) <= MOST_AGAIN &&
-         count_again(&at, 1, 1 / b, reach_px) <= MOST_AGAIN;
+  return count_again(&at, -1, 1 / a, reach_px, &seen) <= MOST_AGAIN &&
+         count_again(&at, 1, 1 / b, reach_px, &seen) <= MOST_AGAIN && seen >= reach_px;
 }

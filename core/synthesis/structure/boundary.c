@@ -24,11 +24,13 @@
 #define MARKED_BESIDE_PX 1
 #define LEAST_SEEN 8
 #define LEAST_STEP 1.f
-/* Others are looked for so far to each side of the line, no nearer than strips reach, and lie in
- * the middle of where their step is this part of its greatest. */
+/* Others are looked for so far to each side of the line, px where w = 1, none so near as its own
+ * step reaches, and lie in the middle of where their step is this part of its greatest. Moved
+ * towards the horizon, or to the viewer, a line may get longer than any picture is. */
 #define LEAST_BESIDE_PX 4
 #define MOST_BESIDE_PX 32
 #define PART_OF_PEAK .5f
+#define FARTHEST_END_PX 1e4f
 
 /* The coarsest level, and the sure lines that were found before. What they reach tells nothing of
  * the ground beside them: a road has the same on both sides of its marking. */
@@ -114,10 +116,10 @@ static bool move_across(const coarsest *in, const rc_crossing *line, float px, r
   rc_place a = rc_copy_place(&flat, move, line->ax - flat.x0, line->ay - flat.y0);
   rc_place b = rc_copy_place(&flat, move, line->bx - flat.x0, line->by - flat.y0);
   float dx = b.x - a.x, dy = b.y - a.y, length = sqrtf(dx * dx + dy * dy);
-  if (a.beyond || b.beyond || !(length > 0)) return false;
+  if (a.beyond || b.beyond || !(length >= 1 && length < FARTHEST_END_PX)) return false;
   float x = a.x + flat.x0, y = a.y + flat.y0, ux = dx / length, uy = dy / length;
-  int first = 0, last = 0;
-  for (int k = -(int)length; k <= 2 * (int)length; k++) {
+  int first = 0, last = 0, far = (int)length + in->flags->width + in->flags->height;
+  for (int k = -far; k <= far; k++) {
     int ix = (int)floorf(x + ux * (float)k + .5f), iy = (int)floorf(y + uy * (float)k + .5f);
     if (!rc_inside(in->flags->width, in->flags->height, ix, iy)) continue;
     if (!(*rc_flag(in->flags, ix, iy) & RC_TARGET)) continue;
@@ -144,7 +146,7 @@ static void find_beside(const coarsest *in, float least, const rc_crossing *line
     float sum = 0, place = 0;
     for (int k = 0; k <= 2 * MOST_BESIDE_PX; k++)
       if (abs(k - MOST_BESIDE_PX) >= LEAST_BESIDE_PX && steps[k] > steps[most]) most = k;
-    if (abs(most - MOST_BESIDE_PX) < LEAST_BESIDE_PX || steps[most] < least) return;
+    if (abs(most - MOST_BESIDE_PX) < LEAST_BESIDE_PX || !(steps[most] > least)) return;
     for (low = most; low > 0 && steps[low - 1] > PART_OF_PEAK * steps[most]; low--) continue;
     for (high = most; high < 2 * MOST_BESIDE_PX && steps[high + 1] > PART_OF_PEAK * steps[most];
          high++)
@@ -178,6 +180,7 @@ static recede_status search(rc_context *context, const rc_image *images, const r
     if (rc_crossing_is_sure(&before[i]))
       in.markings[in.marking_count++] = rc_crossing_coarser(before[i], last);
   float least = LEAST_STEP * (float)rc_covariance_trace(&far);
+  if (!(least > 0)) return RECEDE_OK; /* there are no two textures */
   for (int exponent = from + LEAST_COARSER;
        exponent <= from + MOST_COARSER && exponent < levels && !*found; exponent++) {
     rc_seen seen;

@@ -18,15 +18,17 @@
 /* Edges that meet in a corner do so at 40 to 140 degrees, and count as so much. */
 #define LEAST_SINE .64f
 #define TURN_OF_CORNER .25f
+/* Where they meet is told by so much of each, that lies in a wedge which begins with so many px to
+ * each side and gets wider by so much, and leads by no more than 20 degrees another way than where
+ * the edge begins (a cosine); else by half as much. */
+#define STRAIGHT_PX 20.f
+#define WEDGE_PX 1.5f
+#define WEDGE .12f
+#define STRAIGHT_ON .94f
 /* Two that cross together turn by no more, and count as so much more: both edges of a kerb may be
  * paired up crosswise, too. */
 #define MOST_TURN_OF_CROSSING .1f
 #define PRICE_OF_CROSSING .4f
-/* Where they do is told by so much of them, that lies in a wedge which begins with so many px to
- * each side and gets wider by so much. */
-#define STRAIGHT_PX 20.f
-#define WEDGE_PX 1.5f
-#define WEDGE .12f
 /* An edge that goes straight on out of the picture, where the hole does, counts as so much. */
 #define TURN_OF_LEAVING .35f
 /* Edges of one thing that leave may get so many times as far from each other, in the plane. */
@@ -154,10 +156,10 @@ static bool cross(const rc_change *a, const rc_change *b, const rc_change *p, co
          side_of_chord(p, q, a) * side_of_chord(p, q, b) < 0;
 }
 
-/* The straight line that an edge follows for longer, from its direction so far: what lies in a
- * narrow wedge along that. x, y: a place on it. */
-static rc_change straight_edge(const finder *f, const rc_change *c) {
-  int reach = (int)STRAIGHT_PX;
+/* The straight line that an edge follows so far, from its direction nearby: what lies in a narrow
+ * wedge along that. x, y: a place on it. */
+static rc_change fit_edge(const finder *f, const rc_change *c, float far_px) {
+  int reach = (int)far_px;
   rc_change line = *c;
   for (int round = 0; round < 2; round++) {
     double sum = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
@@ -167,9 +169,10 @@ static rc_change straight_edge(const finder *f, const rc_change *c) {
         float dx = (float)px - line.x, dy = (float)py - line.y;
         float along = ((float)px - c->x) * line.ux + ((float)py - c->y) * line.uy;
         float across = fabsf(dx * line.uy - dy * line.ux);
-        if (along < 0 || along > STRAIGHT_PX || across > WEDGE_PX + WEDGE * along) continue;
+        if (along < 0 || along > far_px || across > WEDGE_PX + WEDGE * along) continue;
         if (!on_edge(f, px, py)) continue;
-        sum++, x += px, y += py, xx += px * px, xy += px * py, yy += py * py;
+        sum++, x += px, y += py;
+        xx += (double)px * px, xy += (double)px * py, yy += (double)py * py;
       }
     if (sum < 2) return line;
     x /= sum, y /= sum, xx = xx / sum - x * x, xy = xy / sum - x * y, yy = yy / sum - y * y;
@@ -184,7 +187,17 @@ static rc_change straight_edge(const finder *f, const rc_change *c) {
   return line;
 }
 
-/* Whether both edges, going straight on, meet in the hole at something like a right angle. */
+/* As far as it goes on the way it began: where it turns soon, no farther. */
+static rc_change straight_edge(const finder *f, const rc_change *c) {
+  for (float far_px = STRAIGHT_PX; far_px > FOLLOWED_PX; far_px /= 2) {
+    rc_change line = fit_edge(f, c, far_px);
+    if (line.ux * c->ux + line.uy * c->uy > STRAIGHT_ON) return line;
+  }
+  return *c;
+}
+
+/* Whether both edges, going straight on, meet in the hole at something like a right angle. One that
+ * leads nowhere does not: there is no sine. */
 static bool make_a_corner(const finder *f, const rc_change *from, const rc_change *to,
                           rc_change *corner) {
   rc_change edges[2] = {straight_edge(f, from), straight_edge(f, to)}, *a = edges, *b = edges + 1;

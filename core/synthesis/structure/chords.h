@@ -19,7 +19,7 @@ typedef struct rc_change {
 } rc_change;
 
 typedef struct rc_chords {
-  rc_change end[2 * RC_MOST_CHORDS][2]; /* of each straight piece */
+  rc_change end[RC_MOST_CHORDS][2]; /* of each straight piece */
   int piece_count;
   int count;                          /* of chords, each of one piece or, in a corner, of two. 0:
                                        * they cannot be told */

@@ -34,7 +34,7 @@ float rc_crossing_distance(const rc_crossing *line, float x, float y);
 bool rc_crossing_is_right(const rc_crossing *line, float x, float y);
 /* It stands out, and what it is followed by looks like it all along: no chance. */
 bool rc_crossing_is_sure(const rc_crossing *line);
-/* It is, and none beside it looks the same: no joint of many. */
+/* It is, and stands alone: no joint of many. */
 bool rc_crossing_is_lone(const rc_crossing *line);
 /* Its direction in the plane, a unit vector. chart: of the same level. */
 rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *line);

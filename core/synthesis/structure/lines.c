@@ -340,7 +340,8 @@ recede_status rc_lines_at(rc_context *context, const rc_seen *seen,
 
 recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc_mask *mask,
                             int exponent, bool corners, const rc_chart *chart,
-                            const rc_copy periods[2], rc_crossing lines[RC_MOST_LINES], int *count) {
+                            const rc_copy periods[2], rc_crossing lines[RC_MOST_LINES],
+                            int *count) {
   static const float grey[3] = {1, 0, 0}, colours[3] = {.3f, .59f, .11f};
   const float *axis = image->channels == 1 ? grey : colours;
   rc_seen seen;
@@ -352,8 +353,8 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
   int reach_px = rc_longer_side(rc_box_of(mask, RC_TARGET));
   rc_copy here_by[2];
   for (int k = 0; periods && k < 2; k++)
-    here_by[k] = (rc_copy){periods[k].a / (float)(1 << exponent),
-                           periods[k].b / (float)(1 << exponent), 0};
+    here_by[k] =
+        (rc_copy){periods[k].a / (float)(1 << exponent), periods[k].b / (float)(1 << exponent), 0};
   for (int i = 0; i < *count; i++)
     lines[i].alone = rc_stands_alone(&seen, &here, &lines[i], reach_px, periods ? here_by : NULL);
   rc_crossings_keep_parallel(&here, lines, count);

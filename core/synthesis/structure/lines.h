@@ -27,8 +27,8 @@ recede_status rc_lines_at(rc_context *context, const rc_seen *seen,
 /* Parallel lines of the plane that cross the hole and can be continued, strongest first. image and
  * mask: the level rc_lines_level says, 2^exponent times coarser than the finest, of which chart is.
  * corners: only those that cut a corner off the hole. One that leaves it at a flat angle has the
- * hole beside it for long, and is seen better at the next coarser level. periods: as of rc_stands_alone, px of
- * the finest level. */
+ * hole beside it for long, and is seen better at the next coarser level. periods: as of
+ * rc_stands_alone, px of the finest level. */
 recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc_mask *mask,
                             int exponent, bool corners, const rc_chart *chart,
                             const rc_copy periods[2], rc_crossing lines[RC_MOST_LINES], int *count);
