@@ -37,13 +37,10 @@ static double setts(double u, double v) {
 
 static double asphalt(double u, double v) { return .2 + 2 * grain(u, v, 40); }
 
-static double kerb_before(double u, double v, double road) {
+static double street(double u, double v) {
   if (u < 0) return pavement(u, v);
-  return u < 2 ? BRIGHT + .3 * grain(u, v, 50) : road;
+  return u < 2 ? BRIGHT + .3 * grain(u, v, 50) : setts(u, v);
 }
-
-static double asphalt_street(double u, double v) { return kerb_before(u, v, asphalt(u, v)); }
-static double setts_street(double u, double v) { return kerb_before(u, v, setts(u, v)); }
 
 static double railway(double u, double v) {
   double along = v / 5 - floor(v / 5);
@@ -108,12 +105,10 @@ static void go_on(const scene *scenes, int count, double least) {
 
 static void kerbs(void) {
   static const scene scenes[] = {
-      {asphalt_street, 55, 0, 10, 1, 0, MIDDLE},
-      {asphalt_street, 60, 5, -25, .5, 0, MIDDLE},
-      {setts_street, 55, -5, 10, 1.5, 0, MIDDLE},
-      {setts_street, 60, 0, -20, 1, 0, MIDDLE},
+      {street, 55, -5, 10, 1.5, 0, MIDDLE},
+      {street, 60, 0, -20, 1, 0, MIDDLE},
   };
-  go_on(scenes, G_N_ELEMENTS(scenes), .9);
+  go_on(scenes, G_N_ELEMENTS(scenes), .92);
 }
 
 static void rails(void) {
