@@ -23,7 +23,7 @@
  * the edge begins (a cosine); else by half as much. */
 #define STRAIGHT_PX 20.f
 #define WEDGE_PX 1.5f
-#define WEDGE .12f
+#define WEDGE .05f
 #define STRAIGHT_ON .94f
 /* Two that cross together turn by no more, and count as so much more: both edges of a kerb may be
  * paired up crosswise, too. */
