@@ -192,6 +192,8 @@ static recede_status find_regions(rc_context *context, rc_descent *e) {
   if (!chords || (rc_has_sides(&e->sides) && chords == 1)) return RECEDE_OK;
   regions.px = (float)(1 << last);
   e->sides.boundary_count = 0;
+  /* A faint edge of a path of bricks, moved in by itself, would break their courses. */
+  rc_crossings_drop_faint(e->lines, &e->line_count);
   e->sides.regions = regions;
   return RECEDE_OK;
 }

@@ -174,6 +174,7 @@ static recede_status search(rc_context *context, const rc_image *images, const r
   coarsest in = {&images[last], &masks[last], rc_chart_coarser(*chart, last), .marking_count = 0};
   rc_covariance far = rc_covariance_of(in.image, in.flags);
   int ways = in.image->channels == 1 ? 1 : 2;
+  bool faint = false;
   rc_crossing lines[RC_MOST_LINES], best;
   *found = false;
   for (int i = 0; i < before_count; i++)
@@ -195,11 +196,13 @@ static recede_status search(rc_context *context, const rc_image *images, const r
         rc_telling_axis(&all, &far, line->axis);
       RC_TRY(rc_see(context, &images[exponent], &masks[exponent], line->axis, &seen));
       RC_TRY(rc_lines_at(context, &seen, lines, &count));
+      faint = way > 0;
       *found = choose(&in, last - exponent, &seen, &here, least, lines, count, &best);
       rc_release(context, mark);
     }
     if (!*found) continue;
     memcpy(best.axis, line->axis, sizeof best.axis);
+    best.faint = faint;
     *line = rc_crossing_coarser(best, -exponent);
     *apart_px = (float)(RC_PROFILE << exponent);
     sides->boundaries[0] = boundary_of(chart, line);

@@ -45,6 +45,13 @@ void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count) {
   *count = kept;
 }
 
+void rc_crossings_drop_faint(rc_crossing lines[RC_MOST_LINES], int *count) {
+  int kept = 0;
+  for (int i = 0; i < *count; i++)
+    if (!lines[i].faint) lines[kept++] = lines[i];
+  *count = kept;
+}
+
 rc_crossing rc_crossing_coarser(rc_crossing line, int exponent) {
   float unit = rc_exp2((float)exponent), *ends[] = {&line.ax, &line.ay, &line.bx, &line.by};
   for (int k = 0; k < 4; k++) *ends[k] = (*ends[k] + .5f) / unit - .5f;

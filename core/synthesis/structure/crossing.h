@@ -20,6 +20,7 @@ typedef struct rc_crossing {
   float rise;      /* -1..1: how far a is a step across */
   float as_strong; /* the part of the rest of the hole's border where some line is as strong */
   bool alone;      /* hardly any parallel to it looks the same */
+  bool faint;      /* it is known only by what tells two textures apart */
   float axis[3];   /* the weights of colours it was seen by */
   /* How far it reaches to its left and right, px where w = 1; 0 where that is not told. */
   float reach_px[2];
@@ -49,6 +50,7 @@ void rc_crossings_keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST
                                 int *count);
 /* Keeps those that are. */
 void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count);
+void rc_crossings_drop_faint(rc_crossing lines[RC_MOST_LINES], int *count);
 /* Keeps those that have nearly all of the hole on one side. flags: of the same level. */
 void rc_crossings_keep_corners(const rc_mask *flags, rc_crossing lines[RC_MOST_LINES], int *count);
 
