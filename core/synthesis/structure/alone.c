@@ -39,13 +39,14 @@ static bool alike(const rc_profile *p, const rc_profile *q) {
   return rc_profile_dot(p, q) > LEAST_LIKENESS * sqrtf(pp * qq) && pp < most * qq && qq < most * pp;
 }
 
-/* How often it comes again, in places next to one another once; and how many were seen. */
+/* How often it comes again, in places next to one another once, until that is too often; and how
+ * many were seen. */
 static int count_again(const beside *at, float outwards, float px, int reach_px, int *seen) {
   rc_profile own, other;
   int count = 0;
   bool before = false;
   if (!profile_of(at, (rc_copy){0, 0, 0}, outwards, &own)) return 0;
-  for (int k = -reach_px; k <= reach_px; k++) {
+  for (int k = -reach_px; k <= reach_px && count <= MOST_AGAIN; k++) {
     float across = (float)k * px;
     rc_copy move = {-across * at->along.b, across * at->along.a, 0};
     bool known = (k < -RC_PROFILE || k > RC_PROFILE) && profile_of(at, move, outwards, &other);
