@@ -38,18 +38,21 @@ bool rc_crossing_is_lone(const rc_crossing *line) {
   return line->alone && rc_crossing_is_sure(line);
 }
 
-void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count) {
+static bool is_no_faint_one(const rc_crossing *line) { return !line->faint; }
+
+static void keep(bool (*which)(const rc_crossing *), rc_crossing lines[RC_MOST_LINES], int *count) {
   int kept = 0;
   for (int i = 0; i < *count; i++)
-    if (rc_crossing_is_lone(&lines[i])) lines[kept++] = lines[i];
+    if (which(&lines[i])) lines[kept++] = lines[i];
   *count = kept;
 }
 
+void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count) {
+  keep(rc_crossing_is_lone, lines, count);
+}
+
 void rc_crossings_drop_faint(rc_crossing lines[RC_MOST_LINES], int *count) {
-  int kept = 0;
-  for (int i = 0; i < *count; i++)
-    if (!lines[i].faint) lines[kept++] = lines[i];
-  *count = kept;
+  keep(is_no_faint_one, lines, count);
 }
 
 rc_crossing rc_crossing_coarser(rc_crossing line, int exponent) {

@@ -35,7 +35,7 @@ float rc_crossing_distance(const rc_crossing *line, float x, float y);
 bool rc_crossing_is_right(const rc_crossing *line, float x, float y);
 /* It stands out, and what it is followed by looks like it all along: no chance. */
 bool rc_crossing_is_sure(const rc_crossing *line);
-/* It is, and stands alone: no joint of many. */
+/* It is sure, and stands alone: no joint of many. */
 bool rc_crossing_is_lone(const rc_crossing *line);
 /* Its direction in the plane, a unit vector. chart: of the same level. */
 rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *line);
@@ -48,7 +48,6 @@ rc_crossing rc_crossing_coarser(rc_crossing line, int exponent);
  * level. */
 void rc_crossings_keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
                                 int *count);
-/* Keeps those that are. */
 void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count);
 void rc_crossings_drop_faint(rc_crossing lines[RC_MOST_LINES], int *count);
 /* Keeps those that have nearly all of the hole on one side. flags: of the same level. */
