@@ -1,6 +1,6 @@
 /* Straight edges between things that lie side by side go on through the hole: both of a kerb, those
- * of a rail across its sleepers, a corner of paint, the crossing of four squares. What is bright is
- * looked at. */
+ * of a rail across its sleepers and of a post in front of a blind, a corner of paint, the crossing
+ * of four squares. What is bright is looked at. */
 #include <math.h>
 
 #include "plane_scene.h"
@@ -57,6 +57,11 @@ static double crossing(double u, double v) {
 static double squares(double u, double v) {
   bool bright = ((int)floor(u / 14) + (int)floor(v / 14)) % 2 == 0;
   return bright ? BRIGHT + .3 * grain(u, v, 90) : .25 + grain(u, v, 100);
+}
+
+static double window(double u, double v) {
+  double slat = u / .7 - floor(u / .7);
+  return fabs(v) < .85 ? BRIGHT + .1 * grain(u, v, 110) : slat < .3 ? .3 : .15 + grain(u, v, 120);
 }
 
 static double (*ground)(double u, double v);
@@ -120,6 +125,15 @@ static void rails(void) {
   go_on(scenes, G_N_ELEMENTS(scenes), .85);
 }
 
+static void posts(void) {
+  static const scene scenes[] = {
+      {window, 70, 90, 0, 0, 0, {270, 140, 370, 340}},
+      {window, 50, 90, 0, .5, 0, {270, 140, 370, 340}},
+      {window, 30, -90, 0, -.5, 0, {250, 150, 390, 330}},
+  };
+  go_on(scenes, G_N_ELEMENTS(scenes), .9);
+}
+
 static void corners(void) {
   static const scene scenes[] = {
       {crossing, 50, 0, 15, 6, 1, MIDDLE},
@@ -141,6 +155,7 @@ int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/edges/kerbs", kerbs);
   g_test_add_func("/edges/rails", rails);
+  g_test_add_func("/edges/posts", posts);
   g_test_add_func("/edges/corners", corners);
   g_test_add_func("/edges/crossings", crossings);
   return g_test_run();

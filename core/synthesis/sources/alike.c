@@ -67,7 +67,8 @@ static void compare_row(void *user, int row, int thread) {
   for (int column = 0; column < c->places.columns; column++) {
     int i = 0;
     rc_looks here;
-    if (!rc_look_at_place(&c->places, column, row, &here)) continue;
+    if (rc_is_beside(&c->places, column, row) || !rc_look_at_place(&c->places, column, row, &here))
+      continue;
     while (i < c->sample_count && rc_looks_square(&here, &c->sample[i]) > c->most) i++;
     c->places.unlike[row * c->places.columns + column] = i == c->sample_count;
   }

@@ -53,11 +53,22 @@ bool rc_look_at(const rc_places *places, int x, int y, rc_looks *looks) {
   return rc_look(places->image, places->flags, x, y, RC_LOOKS_PX, looks);
 }
 
+static void middle_of(const rc_places *p, int column, int row, int *x, int *y) {
+  *x = column * p->step + p->step / 2, *y = row * p->step + p->step / 2;
+  if (*x >= p->flags->width) *x = p->flags->width - 1;
+  if (*y >= p->flags->height) *y = p->flags->height - 1;
+}
+
 bool rc_look_at_place(const rc_places *p, int column, int row, rc_looks *looks) {
-  int x = column * p->step + p->step / 2, y = row * p->step + p->step / 2;
-  if (x >= p->flags->width) x = p->flags->width - 1;
-  if (y >= p->flags->height) y = p->flags->height - 1;
+  int x, y;
+  middle_of(p, column, row, &x, &y);
   return *rc_flag(p->flags, x, y) & RC_KNOWN && rc_look_at(p, x, y, looks);
+}
+
+bool rc_is_beside(const rc_places *p, int column, int row) {
+  int x, y;
+  middle_of(p, column, row, &x, &y);
+  return p->beside[(size_t)y * (size_t)p->flags->width + (size_t)x] > 0;
 }
 
 void rc_places_mark_around(const rc_places *p, int column, int row) {
