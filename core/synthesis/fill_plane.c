@@ -350,6 +350,8 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   /* After all that looks at what may be copied: a dash beside the hole says how much may stand out
    * there. */
   for (int n = 0; n < e.level_count; n++) rc_dash_rows_take(&dashes, n, &e.flags[n]);
+  if (params->engine_boundary && !e.due && !rc_runs(&e.rails))
+    rc_boundary_of_band(&e.chart, e.lines, e.line_count, &e.sides);
   rc_rails found = e.rails;
   RC_TRY(rc_descend(context, &e, &finest));
   RC_TRY(rc_dash_rows_lay(context, &dashes, &finest));

@@ -42,6 +42,17 @@ static double street(double u, double v) {
   return u < 2 ? BRIGHT + .3 * grain(u, v, 50) : setts(u, v);
 }
 
+/* Among setts of all shades a dark kerb hardly stands out, and both sides are the same. */
+#define KERB .25
+static double alley(double u, double v) {
+  double shade;
+  if (fabs(u) < .3) return KERB + .5 * grain(u, v, 130);
+  if (at_joint(v, u, .5, .7, .1, &shade)) return .15;
+  return .3 + .5 * shade + grain(u, v, 140);
+}
+
+static double kerb_of_alley(double u, double v) { return fabs(u) < .3 && v == v ? 1 : 0; }
+
 static double railway(double u, double v) {
   double along = v / 5 - floor(v / 5);
   if (fabs(u) < .35) return BRIGHT;
@@ -76,12 +87,14 @@ typedef struct scene {
   area hole;
 } scene;
 
-static double right_of(const scene *s, bool round) {
-  ground = s->ground, moved_u = s->u, moved_v = s->v;
+static picture picture_of(const scene *s, double (*what)(double u, double v)) {
+  ground = what, moved_u = s->u, moved_v = s->v;
   cosine = cos(s->direction_deg * G_PI / 180), sine = sin(s->direction_deg * G_PI / 180);
-  picture truth =
-      picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, draw, TEXEL_PX, s->slant_deg, s->tilt_deg);
-  task t = task_new(picture_copy(&truth), "quality=draft");
+  return picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, draw, TEXEL_PX, s->slant_deg, s->tilt_deg);
+}
+
+static task filled(const scene *s, bool round) {
+  task t = task_new(picture_of(s, s->ground), "quality=draft");
   t.params.slant_deg = s->slant_deg, t.params.tilt_deg = s->tilt_deg;
   if (round)
     task_round_hole(&t, s->hole);
@@ -89,6 +102,12 @@ static double right_of(const scene *s, bool round) {
     task_hole(&t, s->hole);
   task_succeeds(&t);
   task_assert_outside(&t);
+  return t;
+}
+
+static double right_of(const scene *s, bool round) {
+  picture truth = picture_of(s, s->ground);
+  task t = filled(s, round);
   paint p = task_paint(&t, &truth, s->hole);
   task_clear(&t);
   picture_clear(&truth);
@@ -114,6 +133,38 @@ static void kerbs(void) {
       {street, 60, 0, -20, 1, 0, MIDDLE},
   };
   go_on(scenes, G_N_ELEMENTS(scenes), .92);
+}
+
+/* Of the pixels that lie well within the kerb the part that is as dark. */
+static double kerb_of(const scene *s, bool round) {
+  picture kerb = picture_of(s, kerb_of_alley);
+  task t = filled(s, round);
+  double right = 0, all = 0;
+  for (int y = s->hole.y0; y < s->hole.y1; y++)
+    for (int x = s->hole.x0; x < s->hole.x1; x++) {
+      bool inside = picture_get(&t.mask, x, y, 0) > 0;
+      for (int k = 0; k < 9 && inside; k++)
+        inside = picture_get(&kerb, x - 1 + k % 3, y - 1 + k / 3, 0) > .9;
+      all += inside, right += inside && fabs(picture_get(&t.result, x, y, 0) - KERB) < .1;
+    }
+  task_clear(&t);
+  picture_clear(&kerb);
+  g_test_message("slant %.0f, tilt %.0f, direction %.0f, %s hole: %.0f of %.0f px", s->slant_deg,
+                 s->tilt_deg, s->direction_deg, round ? "round" : "square", right, all);
+  return right / all;
+}
+
+static void kerbs_among_setts(void) {
+  static const scene scenes[] = {
+      {alley, 55, -5, 10, .3, 0, MIDDLE},  {alley, 60, 0, -20, 0, 0, MIDDLE},
+      {alley, 65, 5, 60, -.3, 0, MIDDLE},  {alley, 70, 0, 75, 0, 0, MIDDLE},
+      {alley, 60, 0, -60, .3, .5, MIDDLE}, {alley, 55, 5, 35, .3, .5, MIDDLE},
+  };
+  double sum = 0;
+  for (guint i = 0; i < G_N_ELEMENTS(scenes); i++)
+    sum += (kerb_of(&scenes[i], false) + kerb_of(&scenes[i], true)) / (2 * G_N_ELEMENTS(scenes));
+  g_test_message("together %.3f", sum);
+  g_assert_cmpfloat(sum, >, .8);
 }
 
 static void rails(void) {
@@ -154,6 +205,7 @@ static void crossings(void) {
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/edges/kerbs", kerbs);
+  g_test_add_func("/edges/kerbs-among-setts", kerbs_among_setts);
   g_test_add_func("/edges/rails", rails);
   g_test_add_func("/edges/posts", posts);
   g_test_add_func("/edges/corners", corners);

@@ -127,8 +127,8 @@ static bool set_footprint(const rc_level *level, const rc_chart *chart, rc_copy 
 
 static float price_of_sides(const rc_level *level, const rc_query *query, const rc_place *place) {
   if (!rc_has_sides(&level->sides)) return 0.f;
-  float off = rc_side(&level->sides, &level->chart, place->x, place->y) - query->side;
-  return RC_PRICE_SIDE * level->variance * off * off;
+  float side = rc_side(&level->sides, &level->chart, place->x, place->y);
+  return RC_PRICE_SIDE * level->variance * rc_sides_square(&level->sides, side, query->side);
 }
 
 static float price_of_conditions(const rc_level *level, const rc_query *query,

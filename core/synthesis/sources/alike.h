@@ -7,7 +7,8 @@
 #include "image/image.h"
 #include "image/line.h"
 
-/* Takes RC_SOURCE from pixels that look like nothing beside the hole. band: where the hole's own
+/* Takes RC_SOURCE from pixels that look like nothing beside the hole, where all stays: of what is
+ * there only some is looked at, and that may miss a post. band: where the hole's own
  * scales are, of the finest level; images and flags: the pyramid's levels, finest first; what is
  * unlike is found at the coarsest. All stay where too few of the hole's own scales would be left,
  * or where too little beside the hole is source. taken: the part of the sources that lost it. */

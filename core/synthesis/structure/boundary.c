@@ -88,15 +88,23 @@ static float step_across(const coarsest *in, const rc_crossing *c, int from) {
   return sum;
 }
 
-/* The line with the greatest step among those that go on by themselves; false: there is none. */
+/* The line with the greatest step among those that go on by themselves; false: there is none. Of
+ * the others the strongest band becomes *band, if that is none yet. */
 static bool choose(const coarsest *in, int coarser, const rc_seen *seen, const rc_chart *chart,
-                   float least, const rc_crossing *lines, int count, rc_crossing *best) {
+                   float least, const rc_crossing *lines, int count, rc_crossing *best,
+                   rc_crossing *band) {
   bool found = false;
   for (int i = 0; i < count; i++) {
     rc_crossing c = lines[i], there = rc_crossing_coarser(c, coarser);
     float step = step_across(in, &there, 0);
-    if (step < least || !rc_follow(seen, chart, true, &c)) continue;
-    *best = c, least = step, found = true;
+    bool steps = step >= least && c.strength >= RC_LEAST_STRENGTH;
+    if ((!steps && band->band) || !rc_follow(seen, chart, true, &c)) continue;
+    if (!steps) rc_crossing_tell_band(&c, 1);
+    rc_crossing_forget_chance(&c);
+    if (steps)
+      *best = c, least = step, found = true;
+    else if (c.band)
+      *band = c;
   }
   return found;
 }
@@ -164,12 +172,12 @@ static void find_beside(const coarsest *in, float least, const rc_crossing *line
 }
 
 /* before: lines that were found. Searches the levels for the line between two textures, px of the
- * finest level; *apart_px: no other is nearer. sides: that one and those beside it. False: there is
- * none. */
+ * finest level; *apart_px: no other is nearer. sides: that one and those beside it. *found false:
+ * there is none, but there may be a band. */
 static recede_status search(rc_context *context, const rc_image *images, const rc_mask *masks,
                             int levels, int from, const rc_chart *chart, const rc_crossing *before,
                             int before_count, rc_crossing *line, float *apart_px, bool *found,
-                            rc_sides *sides) {
+                            rc_sides *sides, rc_crossing *band) {
   int last = levels - 1, count;
   coarsest in = {&images[last], &masks[last], rc_chart_coarser(*chart, last), .marking_count = 0};
   rc_covariance far = rc_covariance_of(in.image, in.flags);
@@ -177,6 +185,7 @@ static recede_status search(rc_context *context, const rc_image *images, const r
   bool faint = false;
   rc_crossing lines[RC_MOST_LINES], best;
   *found = false;
+  *band = (rc_crossing){.band = false};
   for (int i = 0; i < before_count; i++)
     if (rc_crossing_is_sure(&before[i]))
       in.markings[in.marking_count++] = rc_crossing_coarser(before[i], last);
@@ -195,9 +204,14 @@ static recede_status search(rc_context *context, const rc_image *images, const r
       else
         rc_telling_axis(&all, &far, line->axis);
       RC_TRY(rc_see(context, &images[exponent], &masks[exponent], line->axis, &seen));
-      RC_TRY(rc_lines_at(context, &seen, lines, &count));
+      RC_TRY(rc_lines_at(context, &seen, true, lines, &count));
       faint = way > 0;
-      *found = choose(&in, last - exponent, &seen, &here, least, lines, count, &best);
+      bool none_yet = !band->band;
+      *found = choose(&in, last - exponent, &seen, &here, least, lines, count, &best, band);
+      if (none_yet && band->band) {
+        memcpy(band->axis, line->axis, sizeof band->axis);
+        *band = rc_crossing_coarser(*band, -exponent);
+      }
       rc_release(context, mark);
     }
     if (!*found) continue;
@@ -214,6 +228,15 @@ static recede_status search(rc_context *context, const rc_image *images, const r
   return RECEDE_OK;
 }
 
+void rc_boundary_of_band(const rc_chart *chart, const rc_crossing *lines, int count,
+                         rc_sides *sides) {
+  for (int i = 0; i < count && !rc_has_sides(sides); i++) {
+    if (!lines[i].band || lines[i].strength >= RC_CLEAR_STRENGTH) continue;
+    sides->boundaries[sides->boundary_count++] = boundary_of(chart, &lines[i]);
+    sides->one_ground = true;
+  }
+}
+
 /* A sleeper's edge may step as a boundary does, but the rail across it is certain. */
 static bool crosses_a_lone_line(const rc_chart *chart, rc_copy direction, const rc_crossing *lines,
                                 int count) {
@@ -228,14 +251,15 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
                                int levels, int from, const rc_chart *chart,
                                rc_crossing lines[RC_MOST_LINES], int *count, rc_rails *rails,
                                rc_sides *sides) {
-  rc_crossing line, kept[RC_MOST_LINES];
+  rc_crossing line, band, kept[RC_MOST_LINES];
   float apart_px;
   bool found, again = false, boards;
   int kept_count = 0;
   rc_sides sought = {.boundary_count = 0};
   sides->boundary_count = 0;
   RC_TRY(search(context, images, masks, levels, from, chart, lines, *count, &line, &apart_px,
-                &found, &sought));
+                &found, &sought, &band));
+  if (!found && band.band && !*count && !rc_runs(rails)) lines[(*count)++] = band;
   rc_copy direction = found ? rc_crossing_direction(chart, &line) : (rc_copy){0, 0, 0};
   if (!found || rc_parallel_in_plane(direction, (rc_copy){rails->a, rails->b, 0})) return RECEDE_OK;
   const rc_boundary *between = &sought.boundaries[0];

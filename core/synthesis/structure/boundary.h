@@ -15,5 +15,9 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
                                int levels, int from, const rc_chart *chart,
                                rc_crossing lines[RC_MOST_LINES], int *count, rc_rails *rails,
                                rc_sides *sides);
+/* Where there are no sides: of a band that is not clear, sides on one ground. A kerb looks so much
+ * like the setts beside it that pieces of it would lie about among them. */
+void rc_boundary_of_band(const rc_chart *chart, const rc_crossing *lines, int count,
+                         rc_sides *sides);
 
 #endif

@@ -226,7 +226,6 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, bool a
     }
   if (!found) return false;
   *line = best;
-  if (!rc_crossing_is_sure(line)) return true; /* of faint ones it is not told */
   f.ruler.chart = chart;
   reach(&f, -1, line->ax, line->ay, line->reach_px);
   reach(&f, 1, line->bx, line->by, line->reach_px);

@@ -16,9 +16,7 @@
 #define DIRECTIONS 128
 /* Lines are looked for at the finest level whose hole has at most so many border pixels. */
 #define MOST_BORDER 800
-/* Signal to noise on both sides. Edges of stones reach 7. */
-#define LEAST_STRENGTH 8.f
-/* But large stones have straight edges of 20 to 100, and one may by chance point at another: where
+/* Large stones have straight edges of 20 to 100, and one may by chance point at another: where
  * more than this part of the rest of the hole's border has a line as strong, one alone is none. A
  * stone .17; cracks and a row of tiles .02 to .08. */
 #define MOST_AS_STRONG .12f
@@ -45,6 +43,7 @@ typedef struct profile {
 
 typedef struct finder {
   rc_seen picture;
+  float least_strength;
   const int32_t *border; /* pixels */
   int border_count;
   float (*direction)[2];
@@ -152,7 +151,7 @@ static void refine(const finder *f, rc_crossing *c) {
       for (int k = 0; k < REFINED_PLACES; k++) {
         float strength = fminf(a[i].strength, b[k].strength);
         float clarity = fminf(a[i].clarity, b[k].clarity);
-        if (strength < LEAST_STRENGTH || clarity <= most || !alike(&a[i], &b[k])) continue;
+        if (strength < f->least_strength || clarity <= most || !alike(&a[i], &b[k])) continue;
         float p = REFINED_STEP_PX * (float)(i - REFINED_PLACES / 2);
         float q = REFINED_STEP_PX * (float)(k - REFINED_PLACES / 2);
         most = clarity;
@@ -202,7 +201,7 @@ static void keep(rc_crossing lines[RC_MOST_LINES], int *count, rc_crossing c) {
 static bool stands_out(const finder *f, int item) {
   int width = f->picture.flags->width, own = f->border[item];
   float strength = f->best[item].strength;
-  if (strength < LEAST_STRENGTH) return false;
+  if (strength < f->least_strength) return false;
   for (int i = 0; i < f->border_count; i++) {
     int dx = f->border[i] % width - own % width, dy = f->border[i] / width - own / width;
     if (dx * dx + dy * dy > APART_PX * APART_PX || i == item) continue;
@@ -228,7 +227,7 @@ static void pair_up(const finder *f, rc_crossing lines[RC_MOST_LINES], int *coun
   for (int i = 0; i < f->border_count; i++) {
     if (!stands_out(f, i)) continue;
     for (int j = i + 1; j < f->border_count; j++) {
-      if (f->best[j].strength < LEAST_STRENGTH) continue;
+      if (f->best[j].strength < f->least_strength) continue;
       const float *u = f->direction[f->best_direction[i]], *v = f->direction[f->best_direction[j]];
       rc_crossing c = {.ax = (float)(f->border[i] % width),
                        .ay = (float)(f->border[i] / width),
@@ -241,7 +240,7 @@ static void pair_up(const finder *f, rc_crossing lines[RC_MOST_LINES], int *coun
         continue;
       refine(f, &c);
       c.as_strong = part_as_strong(f, &c);
-      if (c.strength >= LEAST_STRENGTH) keep(lines, count, c);
+      if (c.strength >= f->least_strength) keep(lines, count, c);
     }
   }
 }
@@ -258,7 +257,10 @@ static void follow(const rc_seen *seen, const rc_chart *chart, int exponent,
   }
   for (int i = 0; i < *count && !alone; i++) {
     rc_crossing c = lines[i];
-    if (rc_follow(seen, chart, false, &c)) lines[kept++] = rc_crossing_coarser(c, -exponent);
+    if (!rc_follow(seen, chart, false, &c)) continue;
+    rc_crossing_tell_band(&c, 0);
+    rc_crossing_forget_chance(&c);
+    lines[kept++] = rc_crossing_coarser(c, -exponent);
   }
   *count = kept;
 }
@@ -318,11 +320,11 @@ int rc_lines_level(const rc_mask *masks, int levels) {
   return -1;
 }
 
-recede_status rc_lines_at(rc_context *context, const rc_seen *seen,
+recede_status rc_lines_at(rc_context *context, const rc_seen *seen, bool faint,
                           rc_crossing lines[RC_MOST_LINES], int *count) {
   float direction[DIRECTIONS][2];
   int32_t *border;
-  finder f = {.picture = *seen, .direction = direction};
+  finder f = {.picture = *seen, .least_strength = RC_LEAST_STRENGTH, .direction = direction};
   rc_block *mark = rc_mark(context);
   *count = 0;
   f.border_count = collect_border(seen->flags, NULL);
@@ -334,6 +336,8 @@ recede_status rc_lines_at(rc_context *context, const rc_seen *seen,
   f.border = border;
   RC_TRY(rc_parallel(context, f.border_count, search_border, &f));
   pair_up(&f, lines, count);
+  f.least_strength = RC_LEAST_FAINT_STRENGTH;
+  if (faint && !*count) pair_up(&f, lines, count);
   rc_release(context, mark);
   return RECEDE_OK;
 }
@@ -347,7 +351,7 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
   rc_seen seen;
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_see(context, image, mask, axis, &seen));
-  RC_TRY(rc_lines_at(context, &seen, lines, count));
+  RC_TRY(rc_lines_at(context, &seen, false, lines, count));
   if (corners) rc_crossings_keep_corners(mask, lines, count);
   rc_chart here = rc_chart_coarser(*chart, exponent);
   int reach_px = rc_longer_side(rc_box_of(mask, RC_TARGET));

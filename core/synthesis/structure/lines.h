@@ -6,6 +6,11 @@
 
 #include "synthesis/structure/crossing.h"
 
+/* Signal to noise of a line on both sides of the hole. Edges of stones reach 7. Where nothing does
+ * fainter ones may be asked for: even a kerb among setts has no more. */
+#define RC_LEAST_STRENGTH 8.f
+#define RC_LEAST_FAINT_STRENGTH 5.f
+
 /* One level of the picture, as lines are looked for in it. */
 typedef struct rc_seen {
   const rc_mask *flags;
@@ -21,8 +26,9 @@ recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *
 int rc_lines_level(const rc_mask *masks, int levels);
 /* Target pixels that touch known ones. */
 int rc_border_length(const rc_mask *flags);
-/* All that look the same on both sides of the hole, strongest first, px of that level. */
-recede_status rc_lines_at(rc_context *context, const rc_seen *seen,
+/* All that look the same on both sides of the hole, strongest first, px of that level. faint: if
+ * there are none, fainter ones. */
+recede_status rc_lines_at(rc_context *context, const rc_seen *seen, bool faint,
                           rc_crossing lines[RC_MOST_LINES], int *count);
 /* Parallel lines of the plane that cross the hole and can be continued, strongest first. image and
  * mask: the level rc_lines_level says, 2^exponent times coarser than the finest, of which chart is.

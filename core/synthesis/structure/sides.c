@@ -35,11 +35,18 @@ static float far_from(const rc_sides *sides, const rc_chart *chart, int boundary
 float rc_side(const rc_sides *sides, const rc_chart *chart, float x, float y) {
   float w = 1.f + chart->lx * x + chart->ly * y, side = 0.f;
   int count = sides->regions.distance ? 1 : sides->boundary_count;
+  if (sides->one_ground) return far_from(sides, chart, 0, x, y) / w * sides->px / HALF_PX;
   for (int i = 0; i < count; i++) {
     float far = far_from(sides, chart, i, x, y) / w;
     side += far / (fabsf(far) + HALF_PX / sides->px);
   }
   return side;
+}
+
+/* On one ground the distances lie on a circle, so that both ends are the same. */
+float rc_sides_square(const rc_sides *sides, float side, float other) {
+  float square = (side - other) * (side - other);
+  return sides->one_ground ? 4.f * square / ((1.f + side * side) * (1.f + other * other)) : square;
 }
 
 bool rc_is_other_side(const rc_sides *sides, const rc_chart *chart, float x, float y) {

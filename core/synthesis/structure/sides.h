@@ -38,7 +38,9 @@ typedef struct rc_sides {
   int boundary_count;
   rc_regions regions;
   bool apart; /* they look different: each has sources and detail of its own */
-  float px;   /* one px of the level, in px of the finest */
+  /* The one boundary is a thing on one ground: only near it does it matter where a place lies. */
+  bool one_ground;
+  float px; /* one px of the level, in px of the finest */
 } rc_sides;
 
 static inline bool rc_has_sides(const rc_sides *sides) {
@@ -51,9 +53,12 @@ static inline rc_sides rc_sides_coarser(rc_sides sides, int exponent) {
   sides.px *= (float)(1 << exponent);
   return sides;
 }
-/* Of regions or one boundary from -1 to 1, 0 where they meet; each boundary more adds as much. In
- * the plane, so that what lies along a boundary has the same. */
+/* Of regions or one boundary from -1 to 1, 0 where they meet; each boundary more adds as much. On
+ * one ground the distance. In the plane, so that what lies along a boundary has the same. */
 float rc_side(const rc_sides *sides, const rc_chart *chart, float x, float y);
+/* How much two places differ by that, squared: those on the two sides of one boundary, or on one
+ * ground those at it and far away, by 4. */
+float rc_sides_square(const rc_sides *sides, float side, float other);
 /* On which side of the regions or the first boundary. */
 bool rc_is_other_side(const rc_sides *sides, const rc_chart *chart, float x, float y);
 
