@@ -15,6 +15,8 @@
  * behind the other, its profile must correlate with its own. Crests and hedges look like lines for
  * one window: .1 to .7 in the third, cracks and boards .84 and more. */
 #define GOES_ON_WINDOWS 3
+#define GOES_ON_WINDOWS_OF_STRONGEST 2 /* kerbs bend, and end; what is so strong is no crest */
+#define STRONGEST .02f                 /* of the hole's border so much is as strong */
 #define GOES_ON_PX 24
 #define LEAST_GOING_ON .75f
 #define LEAST_OF_CONTRAST .02f /* of its square: less is another thing's slope */
@@ -87,7 +89,9 @@ static bool pin(const frame *f, float outwards, float *x, float *y, rc_profile *
 /* Where the picture or the source ends, so may the line. */
 static bool goes_on(const frame *f, float outwards, float x, float y, const rc_profile *own) {
   float square = rc_profile_dot(own, own);
-  for (int k = 0; k < GOES_ON_WINDOWS; k++) {
+  bool strongest = f->line->as_strong <= STRONGEST;
+  int windows = strongest ? GOES_ON_WINDOWS_OF_STRONGEST : GOES_ON_WINDOWS;
+  for (int k = 0; k < windows; k++) {
     float most = -1, from = RC_PROFILE_FROM_PX + GOES_ON_PX * (float)k;
     bool known = false;
     for (float across = -PINNED_WITHIN_PX; across <= PINNED_WITHIN_PX; across += .5f) {
