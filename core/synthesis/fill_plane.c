@@ -142,6 +142,7 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
   if (e->params->engine_boundary && !e->due)
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
                             &e->line_count, &e->rails, &e->sides));
+  if (!e->sides.boundary_count) rc_dash_rows_drop_lines(dashes, e->lines, &e->line_count);
   if (!e->params->engine_rails) e->rails = (rc_rails){0};
   if (rc_runs(&e->rails) && e->params->surface != RECEDE_SURFACE_RAISED && e->params->engine_gauge)
     RC_TRY(rc_gauge_find(context, e->images, e->flags, e->level_count, &e->chart, &e->rails));
@@ -350,6 +351,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   /* After all that looks at what may be copied: a dash beside the hole says how much may stand out
    * there. */
   for (int n = 0; n < e.level_count; n++) rc_dash_rows_take(&dashes, n, &e.flags[n]);
+  /* Where there are two sides no tracks are looked for. */
   if (params->engine_boundary && !e.due && !rc_runs(&e.rails))
     rc_boundary_of_band(&e.chart, e.lines, e.line_count, &e.sides);
   rc_rails found = e.rails;

@@ -51,7 +51,10 @@ static double alley(double u, double v) {
   return .3 + .5 * shade + grain(u, v, 140);
 }
 
-static double kerb_of_alley(double u, double v) { return fabs(u) < .3 && v == v ? 1 : 0; }
+static double kerb_of_alley(double u, double v) {
+  (void)v;
+  return fabs(u) < .3 ? 1 : 0;
+}
 
 static double railway(double u, double v) {
   double along = v / 5 - floor(v / 5);

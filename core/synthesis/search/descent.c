@@ -103,6 +103,8 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
       rc_level_free_pixels(context, &coarser);
     }
     RC_TRY(run_level(context, e, exponent, &level));
+    if (coarsest && !e->continue_lines && e->sides.one_ground) /* what it is not, is a band */
+      e->sides.one_ground = false, e->sides.boundary_count = 0;
     coarser = level;
   }
   *finest = level;

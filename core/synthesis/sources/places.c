@@ -53,22 +53,19 @@ bool rc_look_at(const rc_places *places, int x, int y, rc_looks *looks) {
   return rc_look(places->image, places->flags, x, y, RC_LOOKS_PX, looks);
 }
 
-static void middle_of(const rc_places *p, int column, int row, int *x, int *y) {
-  *x = column * p->step + p->step / 2, *y = row * p->step + p->step / 2;
-  if (*x >= p->flags->width) *x = p->flags->width - 1;
-  if (*y >= p->flags->height) *y = p->flags->height - 1;
-}
-
 bool rc_look_at_place(const rc_places *p, int column, int row, rc_looks *looks) {
-  int x, y;
-  middle_of(p, column, row, &x, &y);
+  int x = column * p->step + p->step / 2, y = row * p->step + p->step / 2;
+  if (x >= p->flags->width) x = p->flags->width - 1;
+  if (y >= p->flags->height) y = p->flags->height - 1;
   return *rc_flag(p->flags, x, y) & RC_KNOWN && rc_look_at(p, x, y, looks);
 }
 
 bool rc_is_beside(const rc_places *p, int column, int row) {
-  int x, y;
-  middle_of(p, column, row, &x, &y);
-  return p->beside[(size_t)y * (size_t)p->flags->width + (size_t)x] > 0;
+  int x0 = column * p->step, y0 = row * p->step;
+  for (int y = y0; y < y0 + p->step && y < p->flags->height; y++)
+    for (int x = x0; x < x0 + p->step && x < p->flags->width; x++)
+      if (p->beside[(size_t)y * (size_t)p->flags->width + (size_t)x]) return true;
+  return false;
 }
 
 void rc_places_mark_around(const rc_places *p, int column, int row) {

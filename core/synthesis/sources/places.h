@@ -40,7 +40,7 @@ double rc_source_variance(const rc_image *image, const rc_mask *flags);
 bool rc_look_at(const rc_places *places, int x, int y, rc_looks *looks);
 /* What the middle of a place looks like. False: it is not known. */
 bool rc_look_at_place(const rc_places *places, int column, int row, rc_looks *looks);
-/* Whether the middle of a place is source beside the hole. */
+/* Whether some of the place is source beside the hole. */
 bool rc_is_beside(const rc_places *places, int column, int row);
 /* What lies there and, for its edge fades into them, in the places around may not be copied. */
 void rc_places_mark_around(const rc_places *places, int column, int row);

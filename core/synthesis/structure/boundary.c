@@ -89,17 +89,19 @@ static float step_across(const coarsest *in, const rc_crossing *c, int from) {
 }
 
 /* The line with the greatest step among those that go on by themselves; false: there is none. Of
- * the others the strongest band becomes *band, if that is none yet. */
+ * the others the strongest band becomes *band, unless that is one. */
 static bool choose(const coarsest *in, int coarser, const rc_seen *seen, const rc_chart *chart,
                    float least, const rc_crossing *lines, int count, rc_crossing *best,
                    rc_crossing *band) {
   bool found = false;
+  const float least_of_any = least;
   for (int i = 0; i < count; i++) {
     rc_crossing c = lines[i], there = rc_crossing_coarser(c, coarser);
     float step = step_across(in, &there, 0);
     bool steps = step >= least && c.strength >= RC_LEAST_STRENGTH;
-    if ((!steps && band->band) || !rc_follow(seen, chart, true, &c)) continue;
-    if (!steps) rc_crossing_tell_band(&c, 1);
+    bool one_ground = step < least_of_any && !band->band;
+    if (!(steps || one_ground) || !rc_follow(seen, chart, true, &c)) continue;
+    if (one_ground) rc_crossing_tell_band(&c, true);
     rc_crossing_forget_chance(&c);
     if (steps)
       *best = c, least = step, found = true;
@@ -206,11 +208,12 @@ static recede_status search(rc_context *context, const rc_image *images, const r
       RC_TRY(rc_see(context, &images[exponent], &masks[exponent], line->axis, &seen));
       RC_TRY(rc_lines_at(context, &seen, true, lines, &count));
       faint = way > 0;
-      bool none_yet = !band->band;
-      *found = choose(&in, last - exponent, &seen, &here, least, lines, count, &best, band);
-      if (none_yet && band->band) {
+      rc_crossing another = {.band = band->band};
+      *found = choose(&in, last - exponent, &seen, &here, least, lines, count, &best, &another);
+      if (!band->band && another.band) {
+        *band = rc_crossing_coarser(another, -exponent);
+        band->faint = way > 0;
         memcpy(band->axis, line->axis, sizeof band->axis);
-        *band = rc_crossing_coarser(*band, -exponent);
       }
       rc_release(context, mark);
     }

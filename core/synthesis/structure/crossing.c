@@ -44,9 +44,9 @@ bool rc_crossing_is_sure(const rc_crossing *line) {
   return line->band || (line->strength >= SURE_STRENGTH && line->kept >= SURE_KEPT);
 }
 
-void rc_crossing_tell_band(rc_crossing *line, int coarser) {
+void rc_crossing_tell_band(rc_crossing *line, bool seen_coarser) {
   float reach_px = line->reach_px[0] + line->reach_px[1];
-  if (coarser)
+  if (seen_coarser)
     line->band =
         line->as_strong <= COARSE_BAND_AS_STRONG && line->kept >= COARSE_BAND_KEPT && reach_px > 0;
   else

@@ -21,7 +21,7 @@ typedef struct rc_crossing {
   float as_strong; /* the part of the rest of the hole's border where some line is as strong */
   bool alone;      /* hardly any parallel to it looks the same */
   bool faint;      /* it is known only by what tells two textures apart */
-  bool band;       /* it stands alone on rougher ground, and is wider than a patch */
+  bool band;       /* it is wide, and hardly anything at the hole's border is as strong */
   float axis[3];   /* the weights of colours it was seen by */
   /* How far it reaches to its left and right, px where w = 1; 0 where that is not told. */
   float reach_px[2];
@@ -38,9 +38,8 @@ bool rc_crossing_is_right(const rc_crossing *line, float x, float y);
 bool rc_crossing_is_sure(const rc_crossing *line);
 /* It is sure, and stands alone: no joint of many. */
 bool rc_crossing_is_lone(const rc_crossing *line);
-/* Tells whether one that was followed is a band. coarser: by how many levels it was seen coarser
- * than others are. */
-void rc_crossing_tell_band(rc_crossing *line, int coarser);
+/* Tells whether one that was followed is a band. seen_coarser: than other lines are. */
+void rc_crossing_tell_band(rc_crossing *line, bool seen_coarser);
 /* After that: how far a faint one reaches is chance. */
 void rc_crossing_forget_chance(rc_crossing *line);
 /* Its direction in the plane, a unit vector. chart: of the same level. */

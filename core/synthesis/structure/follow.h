@@ -12,7 +12,7 @@
 
 /* Moves the line's ends to where it meets the hole and sets its pieces' sources. False: it fades or
  * leaves the picture before the hole could be crossed; or, alone, no other vouching for it, it does
- * not go on for long. chart: of the same level. */
+ * not go on for long. How far it reaches is told of faint ones, too. chart: of the same level. */
 bool rc_follow(const rc_seen *picture, const rc_chart *chart, bool alone, rc_crossing *line);
 
 #endif

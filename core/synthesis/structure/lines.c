@@ -211,7 +211,7 @@ static bool stands_out(const finder *f, int item) {
   return true;
 }
 
-/* Of the border pixels away from a line the part that is as strong. */
+/* Of the border pixels away from a line the part that is as strong; of few pixels no small one. */
 static float part_as_strong(const finder *f, const rc_crossing *c) {
   int width = f->picture.flags->width, away = 0, as_strong = 0;
   for (int i = 0; i < f->border_count; i++) {
@@ -219,7 +219,8 @@ static float part_as_strong(const finder *f, const rc_crossing *c) {
     if (rc_crossing_distance(c, x, y) <= RC_PROFILE) continue;
     away++, as_strong += f->best[i].strength >= c->strength;
   }
-  return away ? (float)as_strong / (float)away : 0.f;
+  if (!as_strong) return away ? fminf(.5f / (float)away, MOST_AS_STRONG) : MOST_AS_STRONG;
+  return (float)as_strong / (float)away;
 }
 
 static void pair_up(const finder *f, rc_crossing lines[RC_MOST_LINES], int *count) {
@@ -258,7 +259,7 @@ static void follow(const rc_seen *seen, const rc_chart *chart, int exponent,
   for (int i = 0; i < *count && !alone; i++) {
     rc_crossing c = lines[i];
     if (!rc_follow(seen, chart, false, &c)) continue;
-    rc_crossing_tell_band(&c, 0);
+    rc_crossing_tell_band(&c, false);
     rc_crossing_forget_chance(&c);
     lines[kept++] = rc_crossing_coarser(c, -exponent);
   }
