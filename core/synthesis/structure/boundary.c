@@ -88,8 +88,9 @@ static float step_across(const coarsest *in, const rc_crossing *c, int from) {
   return sum;
 }
 
-/* The line with the greatest step among those that go on by themselves; false: there is none. Of
- * the others the strongest band becomes *band, unless that is one. */
+/* The line with the greatest step among those that go on by themselves, of faint ones among those
+ * that would be bands; false: there is none. Of the others the strongest band becomes *band, unless
+ * that is one. */
 static bool choose(const coarsest *in, int coarser, const rc_seen *seen, const rc_chart *chart,
                    float least, const rc_crossing *lines, int count, rc_crossing *best,
                    rc_crossing *band) {
@@ -98,10 +99,11 @@ static bool choose(const coarsest *in, int coarser, const rc_seen *seen, const r
   for (int i = 0; i < count; i++) {
     rc_crossing c = lines[i], there = rc_crossing_coarser(c, coarser);
     float step = step_across(in, &there, 0);
-    bool steps = step >= least && c.strength >= RC_LEAST_STRENGTH;
-    bool one_ground = step < least_of_any && !band->band;
-    if (!(steps || one_ground) || !rc_follow(seen, chart, true, &c)) continue;
-    if (one_ground) rc_crossing_tell_band(&c, true);
+    bool steps = step >= least, one_ground = step < least_of_any && !band->band;
+    if (!(steps || one_ground) || !rc_follow(seen, chart, rc_windows_of(&c, true), &c)) continue;
+    rc_crossing_tell_band(&c, true);
+    if (steps && c.strength < RC_LEAST_STRENGTH && !c.band) continue;
+    if (steps) c.band = false;
     rc_crossing_forget_chance(&c);
     if (steps)
       *best = c, least = step, found = true;

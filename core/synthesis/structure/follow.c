@@ -13,10 +13,13 @@
 #define PINNED_STEP_PX .25f
 /* And one that no other vouches for must go on: in each of so many windows of so many px, one
  * behind the other, its profile must correlate with its own. Crests and hedges look like lines for
- * one window: .1 to .7 in the third, cracks and boards .84 and more. */
+ * one window: .1 to .7 in the third, cracks and boards .84 and more. But kerbs bend, and end: if of
+ * the hole's border hardly anything is as strong, it is no crest. Seen coarser windows are longer,
+ * and the second may lie where a kerb is too thin to be seen. */
 #define GOES_ON_WINDOWS 3
-#define GOES_ON_WINDOWS_OF_STRONGEST 2 /* kerbs bend, and end; what is so strong is no crest */
-#define STRONGEST .02f                 /* of the hole's border so much is as strong */
+#define GOES_ON_WINDOWS_OF_STRONGEST 2
+#define GOES_ON_WINDOWS_SEEN_COARSER 1
+#define STRONGEST .02f
 #define GOES_ON_PX 24
 #define LEAST_GOING_ON .75f
 #define LEAST_OF_CONTRAST .02f /* of its square: less is another thing's slope */
@@ -60,6 +63,7 @@ typedef struct frame {
   float length;
   float most_reduced;
   float farther_px; /* than from right beside the hole its sources lie */
+  int windows;      /* in which it must go on */
 } frame;
 
 static void set_frame(frame *f) {
@@ -89,9 +93,7 @@ static bool pin(const frame *f, float outwards, float *x, float *y, rc_profile *
 /* Where the picture or the source ends, so may the line. */
 static bool goes_on(const frame *f, float outwards, float x, float y, const rc_profile *own) {
   float square = rc_profile_dot(own, own);
-  bool strongest = f->line->as_strong <= STRONGEST;
-  int windows = strongest ? GOES_ON_WINDOWS_OF_STRONGEST : GOES_ON_WINDOWS;
-  for (int k = 0; k < windows; k++) {
+  for (int k = 0; k < f->windows; k++) {
     float most = -1, from = RC_PROFILE_FROM_PX + GOES_ON_PX * (float)k;
     bool known = false;
     for (float across = -PINNED_WITHIN_PX; across <= PINNED_WITHIN_PX; across += .5f) {
@@ -202,7 +204,7 @@ static float follow_both(const frame *f, float split, const rc_profile *own_a,
   return sum / (float)f->line->pieces;
 }
 
-static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, bool alone,
+static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int windows,
                            const struct way *way, rc_crossing *line) {
   static const float splits[] = {1, 0, .5f, .25f, .75f, .125f, .375f, .625f, .875f};
   rc_profile own_a, own_b;
@@ -212,15 +214,15 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, bool a
   frame f = {.ruler = {.value = rc_seen_source, .picture = picture},
              .chart = chart,
              .line = line,
-             .most_reduced = way->most_reduced};
+             .most_reduced = way->most_reduced,
+             .windows = windows};
   if (way->widens) f.ruler.chart = chart;
   line->pieces = way->pieces;
   set_frame(&f);
   if (!pin(&f, -1, &line->ax, &line->ay, &own_a) || !pin(&f, 1, &line->bx, &line->by, &own_b))
     return false;
   set_frame(&f);
-  if (alone &&
-      (!goes_on(&f, -1, line->ax, line->ay, &own_a) || !goes_on(&f, 1, line->bx, line->by, &own_b)))
+  if (!goes_on(&f, -1, line->ax, line->ay, &own_a) || !goes_on(&f, 1, line->bx, line->by, &own_b))
     return false;
   for (; f.farther_px <= FARTHEST_PX && !found; f.farther_px += FARTHER_PX)
     for (int i = 0; i < way->splits; i++) {
@@ -241,11 +243,16 @@ static bool leads_to_the_viewer(const rc_chart *chart, const rc_crossing *line) 
   return fminf(a, b) > LEAST_W && fmaxf(a, b) > LEAST_NEARER * fminf(a, b);
 }
 
-bool rc_follow(const rc_seen *picture, const rc_chart *chart, bool alone, rc_crossing *line) {
+int rc_windows_of(const rc_crossing *line, bool seen_coarser) {
+  if (line->as_strong > STRONGEST) return GOES_ON_WINDOWS;
+  return seen_coarser ? GOES_ON_WINDOWS_SEEN_COARSER : GOES_ON_WINDOWS_OF_STRONGEST;
+}
+
+bool rc_follow(const rc_seen *picture, const rc_chart *chart, int windows, rc_crossing *line) {
   for (size_t n = 0; n < sizeof ways / sizeof *ways; n++) {
     rc_crossing c = *line;
     if (ways[n].widens && !leads_to_the_viewer(chart, line)) continue;
-    if (!follow_one_way(picture, chart, alone, &ways[n], &c)) continue;
+    if (!follow_one_way(picture, chart, windows, &ways[n], &c)) continue;
     *line = c;
     return true;
   }

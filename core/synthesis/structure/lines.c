@@ -254,11 +254,11 @@ static void follow(const rc_seen *seen, const rc_chart *chart, int exponent,
   bool alone = true;
   for (int i = 0; i < *count && alone; i++) {
     rc_crossing c = lines[i];
-    alone = !rc_follow(seen, chart, true, &c);
+    alone = !rc_follow(seen, chart, rc_windows_of(&c, false), &c);
   }
   for (int i = 0; i < *count && !alone; i++) {
     rc_crossing c = lines[i];
-    if (!rc_follow(seen, chart, false, &c)) continue;
+    if (!rc_follow(seen, chart, 0, &c)) continue;
     rc_crossing_tell_band(&c, false);
     rc_crossing_forget_chance(&c);
     lines[kept++] = rc_crossing_coarser(c, -exponent);
