@@ -175,6 +175,10 @@ static void find_beside(const coarsest *in, float least, const rc_crossing *line
   }
 }
 
+/* By the colour that varies most, then by what tells textures apart, then, for bands alone, by
+ * contrast: a kerb as dark as half of the setts is even where they are not. */
+enum { VARIES, TELLS, IS_EVEN };
+
 /* before: lines that were found. Searches the levels for the line between two textures, px of the
  * finest level; *apart_px: no other is nearer. sides: that one and those beside it. *found false:
  * there is none, but there may be a band. */
@@ -185,7 +189,6 @@ static recede_status search(rc_context *context, const rc_image *images, const r
   int last = levels - 1, count;
   coarsest in = {&images[last], &masks[last], rc_chart_coarser(*chart, last), .marking_count = 0};
   rc_covariance far = rc_covariance_of(in.image, in.flags);
-  int ways = in.image->channels == 1 ? 1 : 2;
   bool faint = false;
   rc_crossing lines[RC_MOST_LINES], best;
   *found = false;
@@ -201,20 +204,23 @@ static recede_status search(rc_context *context, const rc_image *images, const r
     rc_chart here = rc_chart_coarser(*chart, exponent);
     if (rc_border_length(&masks[exponent]) < LEAST_BORDER) return RECEDE_OK;
     rc_covariance all = rc_covariance_of(&images[exponent], &masks[exponent]);
-    for (int way = 0; way < ways && !*found; way++) {
+    for (int way = VARIES; way <= IS_EVEN && !*found; way++) {
+      if ((way == TELLS && in.image->channels == 1) || (way == IS_EVEN && band->band)) continue;
       rc_block *mark = rc_mark(context);
-      if (way == 0)
-        rc_principal_axis(&all, line->axis);
-      else
+      if (way == TELLS)
         rc_telling_axis(&all, &far, line->axis);
+      else
+        rc_principal_axis(&all, line->axis);
       RC_TRY(rc_see(context, &images[exponent], &masks[exponent], line->axis, &seen));
+      if (way == IS_EVEN) RC_TRY(rc_see_contrast(context, &seen));
       RC_TRY(rc_lines_at(context, &seen, true, lines, &count));
-      faint = way > 0;
+      faint = way > VARIES;
       rc_crossing another = {.band = band->band};
-      *found = choose(&in, last - exponent, &seen, &here, least, lines, count, &best, &another);
+      *found = choose(&in, last - exponent, &seen, &here, least, lines, count, &best, &another) &&
+               way != IS_EVEN;
       if (!band->band && another.band) {
         *band = rc_crossing_coarser(another, -exponent);
-        band->faint = way > 0;
+        band->faint = faint;
         memcpy(band->axis, line->axis, sizeof band->axis);
       }
       rc_release(context, mark);
@@ -257,7 +263,7 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
                                rc_crossing lines[RC_MOST_LINES], int *count, rc_rails *rails,
                                rc_sides *sides) {
   rc_crossing line, band, kept[RC_MOST_LINES];
-  float apart_px;
+  float apart_px = 0;
   bool found, again = false, boards;
   int kept_count = 0;
   rc_sides sought = {.boundary_count = 0};

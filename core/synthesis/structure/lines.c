@@ -301,6 +301,25 @@ recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *
   return RECEDE_OK;
 }
 
+recede_status rc_see_contrast(rc_context *context, rc_seen *seen) {
+  int width = seen->flags->width, height = seen->flags->height;
+  float *contrast;
+  RC_TRY(RC_NEW_ZERO(context, (size_t)width * (size_t)height, &contrast));
+  for (int y = 1; y + 1 < height; y++)
+    for (int x = 1; x + 1 < width; x++) {
+      float sum = 0, square = 0, count = 0, value;
+      for (int k = 0; k < 9; k++) {
+        if (!rc_seen_source(seen, x - 1 + k % 3, y - 1 + k / 3, &value)) continue;
+        sum += value, square += value * value, count++;
+      }
+      if (count > 0)
+        contrast[(size_t)y * (size_t)width + (size_t)x] =
+            sqrtf(fmaxf(square / count - sum / count * (sum / count), 0.f));
+    }
+  seen->value = contrast;
+  return rc_poll(context);
+}
+
 static void set_directions(float (*direction)[2]) {
   const double c = .9987954562051724, s = .049067674327418015; /* of 360 / DIRECTIONS degrees */
   double x = 1, y = 0;

@@ -22,6 +22,8 @@ bool rc_seen_source(const void *seen, int x, int y, float *value);
 /* The level's pixels by these weights of their channels. */
 recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *flags,
                      const float axis[3], rc_seen *seen);
+/* The same picture by its contrast: the deviation within 3 x 3 px. */
+recede_status rc_see_contrast(rc_context *context, rc_seen *seen);
 /* The finest level that lines are looked for in; -1: there is none, or no border. */
 int rc_lines_level(const rc_mask *masks, int levels);
 /* Target pixels that touch known ones. */
