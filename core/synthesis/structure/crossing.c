@@ -14,8 +14,8 @@
 /* Beside setts even a kerb is no stronger than they are. It is no chance if, of the hole's border,
  * so much is as strong, this part of its contrast is kept, and no patch holds it across: kerbs
  * reach 10 px, cracks in a road, whose texture moves in with nothing, 4. Seen coarser, where setts
- * are small, hardly anything is as strong, more is kept, and no crack is seen: of 280 fills, most of
- * them of photos, by its colour one other thing is like that, a path's edge. */
+ * are small, hardly anything is as strong, more is kept, and no crack is seen: of 280 fills, most
+ * of them of photos, by its colour one other thing is like that, a path's edge. */
 #define BAND_AS_STRONG .05f
 #define BAND_KEPT .7f
 #define COARSE_BAND_AS_STRONG .02f
