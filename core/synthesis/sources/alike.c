@@ -61,16 +61,25 @@ static float own_spread(const comparison *c, float *nearest) {
   return nearest[count * OWN_PERCENTILE / 100];
 }
 
+/* 0: it is alike; else the more the farther off, a step each eighth of an octave. */
+static uint8_t how_unlike(float square, float most) {
+  const float step = 1.18920712f; /* 2^(1/4), for it is a square */
+  uint8_t steps = 0;
+  for (; square > most && steps < UINT8_MAX; most *= step) steps++;
+  return steps;
+}
+
 static void compare_row(void *user, int row, int thread) {
   const comparison *c = user;
   (void)thread;
   for (int column = 0; column < c->places.columns; column++) {
-    int i = 0;
+    float least = INFINITY;
     rc_looks here;
     if (rc_is_beside(&c->places, column, row) || !rc_look_at_place(&c->places, column, row, &here))
       continue;
-    while (i < c->sample_count && rc_looks_square(&here, &c->sample[i]) > c->most) i++;
-    c->places.unlike[row * c->places.columns + column] = i == c->sample_count;
+    for (int i = 0; i < c->sample_count && least > c->most; i++)
+      least = fminf(least, rc_looks_square(&here, &c->sample[i]));
+    c->places.unlike[row * c->places.columns + column] = how_unlike(least, c->most);
   }
 }
 

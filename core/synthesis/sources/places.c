@@ -75,13 +75,13 @@ void rc_places_mark_around(const rc_places *p, int column, int row) {
         p->unlike[y * p->columns + x] = 1;
 }
 
-static bool is_unlike(const rc_places *p, int x, int y) {
+static int unlike_at(const rc_places *p, int x, int y) {
   return p->unlike[(size_t)(y / p->step) * (size_t)p->columns + (size_t)(x / p->step)];
 }
 
-/* Sources of the hole's own scales that have room for a patch; all: also those that are unlike. */
+/* Sources of the hole's own scales that have room for a patch and are no more unlike than most. */
 static recede_status count_places(rc_context *context, const rc_places *p, const rc_band *band,
-                                  bool all, uint64_t *places) {
+                                  int most, uint64_t *places) {
   size_t pixels = (size_t)p->flags->width * (size_t)p->flags->height;
   uint8_t *left, *room;
   rc_block *mark = rc_mark(context);
@@ -90,7 +90,7 @@ static recede_status count_places(rc_context *context, const rc_places *p, const
   RC_TRY(RC_NEW(context, pixels, &room));
   for (size_t i = 0; i < pixels; i++) {
     int x = (int)(i % (size_t)p->flags->width), y = (int)(i / (size_t)p->flags->width);
-    left[i] = p->flags->data[i] & RC_SOURCE && (all || !is_unlike(p, x, y));
+    left[i] = p->flags->data[i] & RC_SOURCE && unlike_at(p, x, y) <= most;
   }
   rc_distance_inside(left, 1, p->flags->width, p->flags->height, true, room);
   for (size_t i = 0; i < pixels; i++)
@@ -106,24 +106,32 @@ static recede_status count_places(rc_context *context, const rc_places *p, const
  * and is needed. */
 #define ENOUGH .8
 
-static recede_status enough_left(rc_context *context, const rc_places *p, const rc_band *band,
-                                 bool *enough) {
+/* How unlike places may at most be, the less the more are left. */
+static recede_status most_unlike(rc_context *context, const rc_places *p, const rc_band *band,
+                                 int *most) {
   uint64_t target = 0, before, after;
+  int too_few = -1;
   for (size_t i = 0; i < (size_t)p->flags->width * (size_t)p->flags->height; i++)
     target += p->flags->data[i] & RC_TARGET ? 1 : 0;
-  RC_TRY(count_places(context, p, band, true, &before));
-  RC_TRY(count_places(context, p, band, false, &after));
-  *enough = (double)after >= ENOUGH * (double)target || (before && 2 * after >= before);
+  RC_TRY(count_places(context, p, band, UINT8_MAX, &before));
+  for (*most = UINT8_MAX; *most - too_few > 1;) {
+    int tried = (too_few + *most) / 2;
+    RC_TRY(count_places(context, p, band, tried, &after));
+    if ((double)after >= ENOUGH * (double)target || (before && 2 * after >= before))
+      *most = tried;
+    else
+      too_few = tried;
+  }
   return RECEDE_OK;
 }
 
 /* One place stands for a square of pixels. The part of the sources that is taken. */
-static double take_source(const rc_places *p, const rc_mask *flags, int shift) {
+static double take_source(const rc_places *p, int most, const rc_mask *flags, int shift) {
   int side = p->step << shift;
   double all = 0, taken = 0;
   for (int y = 0; y < flags->height; y++)
     for (int x0 = 0; x0 < flags->width; x0 += side) {
-      bool unlike = is_unlike(p, x0 >> shift, y >> shift);
+      bool unlike = unlike_at(p, x0 >> shift, y >> shift) > most;
       int x1 = x0 + side < flags->width ? x0 + side : flags->width;
       for (int x = x0; x < x1; x++) {
         uint8_t *flag = rc_flag(flags, x, y);
@@ -138,11 +146,11 @@ static double take_source(const rc_places *p, const rc_mask *flags, int shift) {
 recede_status rc_places_take(rc_context *context, const rc_places *places, const rc_band *band,
                              const rc_mask *flags, double *taken) {
   rc_band here = *band;
-  bool enough;
+  int most;
   *taken = 0;
   for (int i = 1; i < places->levels; i++) here.w = rc_line_halved(&here.w);
-  RC_TRY(enough_left(context, places, &here, &enough));
-  for (int exponent = enough ? places->levels - 1 : -1; exponent >= 0; exponent--)
-    *taken = take_source(places, &flags[exponent], places->levels - 1 - exponent);
+  RC_TRY(most_unlike(context, places, &here, &most));
+  for (int exponent = places->levels - 1; exponent >= 0; exponent--)
+    *taken = take_source(places, most, &flags[exponent], places->levels - 1 - exponent);
   return RECEDE_OK;
 }

@@ -27,7 +27,7 @@ typedef struct rc_places {
   uint8_t *beside; /* of each pixel: its distance from the hole if it is source beside it, else 0 */
   int step;        /* px from one place to the next */
   int columns, rows; /* of places */
-  uint8_t *unlike;   /* of each: it may not be copied */
+  uint8_t *unlike;   /* of each: how much speaks against copying it; 0: nothing */
 } rc_places;
 
 /* images and flags: the pyramid's levels, finest first. Of a level with more pixels than most only
@@ -44,8 +44,8 @@ bool rc_look_at_place(const rc_places *places, int column, int row, rc_looks *lo
 bool rc_is_beside(const rc_places *places, int column, int row);
 /* What lies there and, for its edge fades into them, in the places around may not be copied. */
 void rc_places_mark_around(const rc_places *places, int column, int row);
-/* Takes RC_SOURCE from what may not be copied, at all levels, unless too little of the hole's own
- * scales would be left. band: where those are, of the finest level; taken: the part of the sources
+/* Takes RC_SOURCE from what may not be copied, at all levels; where too little of the hole's own
+ * scales would be left, only from what is the most unlike. band: where those are, of the finest level; taken: the part of the sources
  * that lost it. */
 recede_status rc_places_take(rc_context *context, const rc_places *places, const rc_band *band,
                              const rc_mask *flags, double *taken);
