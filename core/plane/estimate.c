@@ -72,9 +72,11 @@
  * .4 a meadow that is blurred behind a penguin is one. */
 #define CEILING_DOUBT .5
 /* What by chance is read wrongly is seldom level: so much of the doubt goes, if anything at all
- * tells the plane. Of photos held upright; of those upside down half are then trusted floors. */
-#define LEVEL_TRUST .45
+ * tells the plane, and at least this share of the cells lies on it. Of photos held upright; of those
+ * upside down half are then trusted floors. */
+#define LEVEL_TRUST .53
 #define LEAST_TOLD .05
+#define LEVEL_SHARE .3
 
 enum { FLAT, RAISED, MODELS };
 
@@ -222,10 +224,12 @@ static recede_status set_up(rc_context *context, search *s, const rc_spectra *sp
   return RECEDE_OK;
 }
 
-static double cost_among_readings(const rc_point *p) {
-  rc_lean lean = lean_of(p);
-  return p->cost * (rc_cost_of_ceiling(lean) - LEVEL_FAVOUR * rc_lean_level(lean));
+/* The less, the likelier such a plane is in a picture, whatever this one shows. */
+static double times_unlikely(const rc_point *p) {
+  return rc_cost_of_ceiling(lean_of(p)) - LEVEL_FAVOUR * rc_lean_level(lean_of(p));
 }
+
+static double cost_among_readings(const rc_point *p) { return p->cost * times_unlikely(p); }
 
 /* Those to look at closer; the last is the likeliest of the others, which may be a level floor. */
 static void take_starts(rc_point coarse[COARSE]) {
@@ -297,13 +301,13 @@ static double told_by_two_points(const search *s, const rc_point *reading) {
 }
 
 /* The farthest other reading that explains the picture almost as well, and lines no worse. Where
- * what lies beside the hole is asked, a ceiling, or a sky, elsewhere does not matter. */
+ * what lies beside the hole is asked, what is as unlikely as a ceiling must explain more. */
 static double ambiguity_deg(const search *s) {
   double farthest = 0, told = told_by_two_points(s, &s->best);
   for (int m = 0; m < MODELS; m++)
     for (int i = 0; i < STARTS; i++) {
       const rc_point *other = &s->closer[m][i];
-      double more = rc_cost_of_ceiling(lean_of(other)) / rc_cost_of_ceiling(lean_of(&s->best));
+      double more = times_unlikely(other) / times_unlikely(&s->best);
       if ((s->placed ? fmax(1, more) : 1) * other->cost >= ALMOST * s->best.cost ||
           told - told_by_two_points(s, other) > TOLD_SO_MUCH_BETTER)
         continue;
@@ -340,15 +344,16 @@ static double told_by_lines(const search *s) {
  * lie on the plane, or lines must tell it; parts of the picture must say the same, and nothing else
  * may explain it as well. A level floor needs less of all that. */
 static double judge(const search *s) {
-  double left = s->best.cost * s->best.cost;
-  double share =
-      fmin(1, fmax(0, (share_on_plane(s) - NO_PLANE_SHARE) / (PLANE_SHARE - NO_PLANE_SHARE)));
+  double left = s->best.cost * s->best.cost, on_plane = share_on_plane(s) - NO_PLANE_SHARE;
+  double share = fmin(1, fmax(0, on_plane / (PLANE_SHARE - NO_PLANE_SHARE)));
+  double level_share = fmin(1, fmax(0, on_plane / (LEVEL_SHARE - NO_PLANE_SHARE)));
   double doubt = CEILING_DOUBT * rc_lean_ceiling(lean_of(&s->best));
   double texture = share * rc_falling(left, RC_LARGE_MISFIT * RC_LARGE_MISFIT) * (1 - doubt);
   double told = (1 - (1 - texture) * (1 - told_by_lines(s))) *
                 rc_falling(disagreement_deg(s), LARGE_DISAGREEMENT_DEG) *
                 rc_falling(ambiguity_deg(s), LARGE_AMBIGUITY_DEG);
-  double trust = LEVEL_TRUST * rc_lean_level(lean_of(&s->best)) * fmin(1, told / LEAST_TOLD);
+  double trust =
+      LEVEL_TRUST * rc_lean_level(lean_of(&s->best)) * level_share * fmin(1, told / LEAST_TOLD);
   return 1 - (1 - told) * (1 - trust);
 }
 
