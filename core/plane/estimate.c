@@ -72,8 +72,8 @@
  * .4 a meadow that is blurred behind a penguin is one. */
 #define CEILING_DOUBT .5
 /* What by chance is read wrongly is seldom level: so much of the doubt goes, if anything at all
- * tells the plane, and at least this share of the cells lies on it. Of photos held upright; of those
- * upside down half are then trusted floors. */
+ * tells the plane, and at least this share of the cells lies on it. Of photos held upright; of
+ * those upside down half are then trusted floors. */
 #define LEVEL_TRUST .53
 #define LEAST_TOLD .05
 #define LEVEL_SHARE .3

@@ -84,6 +84,39 @@ static void things_stay_on_their_side(void) {
   g_assert_cmpfloat(heap_far_off(straw_on_gravel, with, is_straw), <, .25 * straw);
 }
 
+/* A dark wood of all sorts of things behind an even road, on which somebody in dark clothes stands
+ * to the left of the hole and of nothing else. */
+static picture a_walker_before_a_wood(void) {
+  picture p = picture_new(480, 420, 3, RECEDE_U8);
+  for (int y = 0; y < 420; y++)
+    for (int x = 0; x < 480; x++) {
+      bool walker = x >= 60 && x < 120 && y >= 130 && y < 360;
+      double fine = noise_at(x / 2, y / 2, 8), wood = noise_at(x / 20, y / 20, 9);
+      for (int k = 0; k < 3; k++) {
+        double tree = .6 * wood * noise_at(x / 6, y / 6, 10 + k), road = .6 + .06 * fine;
+        double cloth = (y < 200 ? .25 : .15) + .1 * noise_at(x / 4, y / 4, 15);
+        picture_set(&p, x, y, k, (float)(walker ? cloth : y < 170 ? tree : road));
+      }
+    }
+  return p;
+}
+
+/* What lies beside the hole above differs so much in itself that clothes look no odder; beside the
+ * road below they do. */
+static void nobody_is_copied_onto_a_road(void) {
+  const area hole = {200, 90, 340, 330};
+  double dark = 0;
+  for (int seed = 0; seed < 4; seed++) {
+    task t = filled(a_walker_before_a_wood(), hole, "orientation=frontal", seed);
+    for (int y = 200; y < hole.y1; y++)
+      for (int x = hole.x0; x < hole.x1; x++) dark += picture_get(&t.result, x, y, 1) < .4f;
+    task_clear(&t);
+  }
+  dark /= 4 * 130 * 140;
+  g_test_message("%.4f of the road is dark", dark);
+  g_assert_cmpfloat(dark, <, .01);
+}
+
 /* Rough ground in focus from row 150 to 250, and more and more out of it above and below. */
 static picture ground_in_focus_between(void) {
   picture sharp = picture_new(480, 400, 1, RECEDE_U8), p = picture_new(480, 400, 1, RECEDE_U8);
@@ -141,6 +174,7 @@ static void what_is_in_focus_stays_so(void) {
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/kin/things", things_stay_on_their_side);
+  g_test_add_func("/kin/walker", nobody_is_copied_onto_a_road);
   g_test_add_func("/kin/focus", what_is_in_focus_stays_so);
   return g_test_run();
 }

@@ -14,12 +14,15 @@
 #define MOST_SAMPLES 256
 /* The square that is looked at, to each side: a hen's tail is 5 px at the coarsest level. */
 #define HALF_PX 2
-/* Two are alike that differ by no more than samples do, 90 of 100, from the most similar other, at
- * most so far away, that shares no pixel with them; that is, in units of what places differ by, at
+/* What looks like a part differs from one of its samples by no more than these do, 90 of 100, from
+ * the most similar other, at most so far away, that shares no pixel with them: beside a wood all is
+ * alike, beside a road little. A part has few samples: it gets at least what textures that fill the
+ * picture have, 13 in units of what places differ by, unless all samples have less, and these at
  * least 1. Up to 1.5 times that hens and grass were alike, and water and stone. */
 #define OWN_PERCENTILE 90
 #define OWN_PX 15
 #define LEAST_OWN 1.f
+#define OF_A_TEXTURE 13.f
 /* What a sample says of a target pixel falls with the square of its distance, and this. */
 #define NEAR_SQUARE_PX 4
 /* A copy is the more foreign the less it has of what is usual; from so much on it is not, for what
@@ -106,11 +109,11 @@ static void order_by_part(rc_kin *f) {
   }
 }
 
-/* The percentile of the squares; infinite where there are no such samples. */
-static float own_spread(const rc_kin *f) {
+/* The percentile of the squares of samples from..to; infinite where fewer have others. */
+static float own_spread(const rc_kin *f, int from, int to, int fewest) {
   float nearest[MOST_SAMPLES];
   int count = 0;
-  for (int i = 0; i < f->count; i++) {
+  for (int i = from; i < to; i++) {
     const sample *p = &f->samples[i];
     float least = INFINITY;
     for (int k = 0; k < f->count; k++) {
@@ -121,7 +124,7 @@ static float own_spread(const rc_kin *f) {
     }
     if (isfinite(least)) nearest[count++] = least;
   }
-  if (count < LEAST_SAMPLES) return INFINITY;
+  if (count < fewest) return INFINITY;
   qsort(nearest, (size_t)count, sizeof *nearest, rc_by_value);
   return fmaxf(nearest[count * OWN_PERCENTILE / 100], LEAST_OWN);
 }
@@ -130,7 +133,7 @@ static float own_spread(const rc_kin *f) {
 static float looks_like(const rc_kin *f, const rc_material *material, int part) {
   int alike = 0, count = f->first[part + 1] - f->first[part];
   for (int i = f->first[part]; i < f->first[part + 1]; i++)
-    alike += rc_material_square(material, &f->samples[i].material) <= f->most;
+    alike += rc_material_square(material, &f->samples[i].material) <= f->most[part];
   return (float)alike / (float)count;
 }
 
@@ -225,10 +228,14 @@ recede_status rc_kin_find(rc_context *context, const rc_image *images, const rc_
   RC_TRY(rc_materials_find(context, images, flags, levels, HALF_PX, materials));
   *kin = (rc_kin){.flags = coarsest, .materials = materials};
   RC_TRY(take_samples(context, kin));
-  kin->most = own_spread(kin);
-  if (!isfinite(kin->most)) return RECEDE_OK;
+  float most = own_spread(kin, 0, kin->count, LEAST_SAMPLES);
+  if (!isfinite(most)) return RECEDE_OK;
   divide(kin);
   order_by_part(kin);
+  for (int k = 0; k < RC_KIN_PARTS; k++) {
+    float own = own_spread(kin, kin->first[k], kin->first[k + 1], 1);
+    kin->most[k] = fminf(most, fmaxf(own, OF_A_TEXTURE));
+  }
   compare_parts(kin);
   *told = are_several(kin);
   return rc_poll(context);

@@ -31,7 +31,7 @@ typedef struct rc_kin {
   int count, first[RC_KIN_PARTS + 1];
   float middle[RC_KIN_PARTS][2];
   float among[RC_KIN_PARTS][RC_KIN_PARTS]; /* how much of one part looks like the other */
-  float most;                              /* square of the distance up to which they are alike */
+  float most[RC_KIN_PARTS]; /* square of the distance up to which what looks like it is alike */
 } rc_kin;
 
 /* images and flags: the pyramid's levels, finest first; flags and memory must stay. told: so many

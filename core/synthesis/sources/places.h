@@ -45,8 +45,8 @@ bool rc_is_beside(const rc_places *places, int column, int row);
 /* What lies there and, for its edge fades into them, in the places around may not be copied. */
 void rc_places_mark_around(const rc_places *places, int column, int row);
 /* Takes RC_SOURCE from what may not be copied, at all levels; where too little of the hole's own
- * scales would be left, only from what is the most unlike. band: where those are, of the finest level; taken: the part of the sources
- * that lost it. */
+ * scales would be left, only from what is the most unlike. band: where those are, of the finest
+ * level; taken: the part of the sources that lost it. */
 recede_status rc_places_take(rc_context *context, const rc_places *places, const rc_band *band,
                              const rc_mask *flags, double *taken);
 
