@@ -36,10 +36,6 @@
  * pebbles .05 to .25; paths beside grass, walls, water and animals .3 to .7. */
 #define FOREIGN .1f
 #define LEAST_FOREIGN .27
-/* Where all samples together differ by more than so many times what a texture's do there are
- * several things beside the hole, and fewer are enough. At .16 a board's squares were several. */
-#define TIMES_A_TEXTURE 2.f
-#define LEAST_FOREIGN_OF_SEVERAL .2
 /* Of so many sources and target pixels each, at the most. */
 #define MOST_EACH 256
 
@@ -200,8 +196,8 @@ static float crossing_share(const rc_likeness *source, const rc_nearness *target
   return (float)most / 255;
 }
 
-/* Of every n-th source and target pixel, so large a part of the pairs is foreign. */
-static bool are_several(const rc_kin *f, double least_foreign) {
+/* Of every n-th source and target pixel. */
+static bool are_several(const rc_kin *f) {
   rc_likeness source[MOST_EACH];
   rc_nearness target[MOST_EACH];
   int width = f->flags->width, height = f->flags->height, sources = 0, targets = 0, foreign = 0;
@@ -220,7 +216,7 @@ static bool are_several(const rc_kin *f, double least_foreign) {
     }
   for (int i = 0; i < sources; i++)
     for (int k = 0; k < targets; k++) foreign += usual_share(&source[i], &target[k]) < FOREIGN;
-  return foreign >= least_foreign * sources * targets;
+  return foreign >= LEAST_FOREIGN * sources * targets;
 }
 
 recede_status rc_kin_find(rc_context *context, const rc_image *images, const rc_mask *flags,
@@ -241,8 +237,7 @@ recede_status rc_kin_find(rc_context *context, const rc_image *images, const rc_
     kin->most[k] = fminf(most, fmaxf(own, OF_A_TEXTURE));
   }
   compare_parts(kin);
-  bool differ = most > TIMES_A_TEXTURE * OF_A_TEXTURE;
-  *told = are_several(kin, differ ? LEAST_FOREIGN_OF_SEVERAL : LEAST_FOREIGN);
+  *told = are_several(kin);
   return rc_poll(context);
 }
 
