@@ -10,21 +10,12 @@
 /* Two changes so near to each other are a spur of one texture (or lie on two parts of the hole that
  * nearly touch: then nothing is told). */
 #define APART_PX 6.f
-/* A change's direction is that of the edge so far outwards. */
-#define FOLLOWED_PX 7.f
 /* Chords may turn from the edges' directions: 1 - cos at both ends together. A right angle cut by a
  * chord has .6; real ones had up to .2, chance ones from .76 on. */
 #define MOST_TURN .7f
 /* Edges that meet in a corner do so at 40 to 140 degrees, and count as so much. */
 #define LEAST_SINE .64f
 #define TURN_OF_CORNER .25f
-/* Where they meet is told by so much of each, that lies in a wedge which begins with so many px to
- * each side and gets wider by so much, and leads by no more than 20 degrees another way than where
- * the edge begins (a cosine); else by half as much. */
-#define STRAIGHT_PX 20.f
-#define WEDGE_PX 1.5f
-#define WEDGE .05f
-#define STRAIGHT_ON .94f
 /* Two that cross together turn by no more, and count as so much more: both edges of a kerb may be
  * paired up crosswise, too. */
 #define MOST_TURN_OF_CROSSING .1f
@@ -33,40 +24,23 @@
 #define TURN_OF_LEAVING .35f
 /* Edges of one thing that leave may get so many times as far from each other, in the plane. */
 #define MOST_OPENING 1.5f
-/* The border is so wide. */
-#define BORDER_PX 2
-
 typedef struct finder {
-  const rc_around *around;
+  rc_labels labels;
   const rc_chart *chart;
-  const int8_t *label;
 } finder;
-
-bool rc_on_border(const rc_around *around, const int8_t *label, int x, int y) {
-  size_t at = (size_t)y * (size_t)around->width + (size_t)x;
-  return rc_inside(around->width, around->height, x, y) && label[at] && around->from_hole[at] &&
-         around->from_hole[at] <= BORDER_PX;
-}
-
-static bool differ(const finder *f, int x, int y, int label) {
-  const rc_around *a = f->around;
-  return rc_inside(a->width, a->height, x, y) &&
-         f->label[(size_t)y * (size_t)a->width + (size_t)x] == -label;
-}
 
 /* Whether a pixel of the border touches one with the other label. */
 static bool changes_at(const finder *f, int x, int y) {
-  int label = f->label[(size_t)y * (size_t)f->around->width + (size_t)x];
   for (int j = y - 1; j <= y + 1; j++)
     for (int i = x - 1; i <= x + 1; i++)
-      if (rc_on_border(f->around, f->label, i, j) && differ(f, i, j, label)) return true;
+      if (rc_on_border(&f->labels, i, j) && rc_labels_differ(&f->labels, x, y, i, j)) return true;
   return false;
 }
 
 /* The change that a pixel is part of: the middle of those that touch one another in left, from
  * which they are taken. */
 static rc_change collect(const finder *f, int32_t pixel, uint8_t *left, int32_t *stack) {
-  int width = f->around->width, depth = 0;
+  int width = f->labels.around->width, depth = 0;
   float x = 0, y = 0, count = 0;
   stack[depth++] = pixel, left[pixel] = 0;
   while (depth) {
@@ -74,34 +48,11 @@ static rc_change collect(const finder *f, int32_t pixel, uint8_t *left, int32_t 
     x += (float)hx, y += (float)hy, count++;
     for (int j = hy - 1; j <= hy + 1; j++)
       for (int i = hx - 1; i <= hx + 1; i++) {
-        if (!rc_inside(width, f->around->height, i, j) || !left[j * width + i]) continue;
+        if (!rc_inside(width, f->labels.around->height, i, j) || !left[j * width + i]) continue;
         stack[depth++] = j * width + i, left[j * width + i] = 0;
       }
   }
   return (rc_change){x / count, y / count, 0, 0};
-}
-
-static bool on_edge(const finder *f, int x, int y) {
-  const rc_around *a = f->around;
-  if (!rc_inside(a->width, a->height, x, y)) return false;
-  size_t at = (size_t)y * (size_t)a->width + (size_t)x;
-  int label = a->from_hole[at] ? f->label[at] : 0;
-  return label && (differ(f, x - 1, y, label) || differ(f, x + 1, y, label) ||
-                   differ(f, x, y - 1, label) || differ(f, x, y + 1, label));
-}
-
-/* Looks outwards where the edge leads. */
-static void follow(const finder *f, rc_change *c) {
-  int reach = (int)FOLLOWED_PX, cx = (int)(c->x + .5f), cy = (int)(c->y + .5f);
-  for (int y = cy - reach; y <= cy + reach; y++)
-    for (int x = cx - reach; x <= cx + reach; x++) {
-      float dx = (float)x - c->x, dy = (float)y - c->y;
-      if (dx * dx + dy * dy > FOLLOWED_PX * FOLLOWED_PX || !on_edge(f, x, y)) continue;
-      c->ux += dx, c->uy += dy;
-    }
-  float length = sqrtf(c->ux * c->ux + c->uy * c->uy);
-  bool leads = length > .5f; /* px; else it leads nowhere */
-  c->ux = leads ? c->ux / length : 0, c->uy = leads ? c->uy / length : 0;
 }
 
 /* Takes pairs of changes that are spurs out. */
@@ -118,7 +69,7 @@ static void drop_spurs(rc_change changes[RC_MOST_CHANGES], int *count) {
 
 /* None where there are more than can be told, or one texture has hardly any border. */
 static recede_status find_changes(rc_context *context, const finder *f, rc_chords *chords) {
-  const rc_around *a = f->around;
+  const rc_around *a = f->labels.around;
   int *count = &chords->change_count;
   uint8_t *left;
   int32_t *stack;
@@ -128,8 +79,8 @@ static recede_status find_changes(rc_context *context, const finder *f, rc_chord
   RC_TRY(RC_NEW(context, a->pixels, &stack));
   for (int y = 0; y < a->height; y++)
     for (int x = 0; x < a->width; x++) {
-      if (!rc_on_border(a, f->label, x, y)) continue;
-      border++, first += f->label[y * a->width + x] > 0;
+      if (!rc_on_border(&f->labels, x, y)) continue;
+      border++, first += f->labels.label[y * a->width + x] > 0;
       left[y * a->width + x] = changes_at(f, x, y);
     }
   for (size_t i = 0; i < a->pixels && *count < RC_MOST_CHANGES; i++)
@@ -156,64 +107,25 @@ static bool cross(const rc_change *a, const rc_change *b, const rc_change *p, co
          side_of_chord(p, q, a) * side_of_chord(p, q, b) < 0;
 }
 
-/* The straight line that an edge follows so far, from its direction nearby: what lies in a narrow
- * wedge along that. x, y: a place on it. */
-static rc_change fit_edge(const finder *f, const rc_change *c, float far_px) {
-  int reach = (int)far_px;
-  rc_change line = *c;
-  for (int round = 0; round < 2; round++) {
-    double sum = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-    for (int j = -reach; j <= reach; j++)
-      for (int i = -reach; i <= reach; i++) {
-        int px = (int)(c->x + .5f) + i, py = (int)(c->y + .5f) + j;
-        float dx = (float)px - line.x, dy = (float)py - line.y;
-        float along = ((float)px - c->x) * line.ux + ((float)py - c->y) * line.uy;
-        float across = fabsf(dx * line.uy - dy * line.ux);
-        if (along < 0 || along > far_px || across > WEDGE_PX + WEDGE * along) continue;
-        if (!on_edge(f, px, py)) continue;
-        sum++, x += px, y += py;
-        xx += (double)px * px, xy += (double)px * py, yy += (double)py * py;
-      }
-    if (sum < 2) return line;
-    x /= sum, y /= sum, xx = xx / sum - x * x, xy = xy / sum - x * y, yy = yy / sum - y * y;
-    /* The greater axis of what they spread by. */
-    double root = sqrt((xx - yy) * (xx - yy) / 4 + xy * xy), great = (xx + yy) / 2 + root;
-    double ux = xx > yy ? great - yy : xy, uy = xx > yy ? xy : great - xx;
-    double length = sqrt(ux * ux + uy * uy);
-    if (!(length > 0)) return line;
-    if (ux * (double)c->ux + uy * (double)c->uy < 0) length = -length;
-    line = (rc_change){(float)x, (float)y, (float)(ux / length), (float)(uy / length)};
-  }
-  return line;
-}
-
-/* As far as it goes on the way it began: where it turns soon, no farther. */
-static rc_change straight_edge(const finder *f, const rc_change *c) {
-  for (float far_px = STRAIGHT_PX; far_px > FOLLOWED_PX; far_px /= 2) {
-    rc_change line = fit_edge(f, c, far_px);
-    if (line.ux * c->ux + line.uy * c->uy > STRAIGHT_ON) return line;
-  }
-  return *c;
-}
-
 /* Whether both edges, going straight on, meet in the hole at something like a right angle. One that
  * leads nowhere does not: there is no sine. */
 static bool make_a_corner(const finder *f, const rc_change *from, const rc_change *to,
                           rc_change *corner) {
-  rc_change edges[2] = {straight_edge(f, from), straight_edge(f, to)}, *a = edges, *b = edges + 1;
+  rc_change edges[2] = {rc_edge_straight(&f->labels, from), rc_edge_straight(&f->labels, to)},
+            *a = edges, *b = edges + 1;
   float sine = a->ux * b->uy - a->uy * b->ux, dx = a->x - b->x, dy = a->y - b->y;
   if (fabsf(sine) < LEAST_SINE) return false;
   float s = (dx * b->uy - dy * b->ux) / sine, t = (dx * a->uy - dy * a->ux) / sine;
   *corner = (rc_change){a->x - s * a->ux, a->y - s * a->uy, 0, 0};
   int x = (int)floorf(corner->x + .5f), y = (int)floorf(corner->y + .5f);
-  return s > 0 && t > 0 && rc_inside(f->around->width, f->around->height, x, y) &&
-         !f->around->from_hole[y * f->around->width + x];
+  return s > 0 && t > 0 && rc_inside(f->labels.around->width, f->labels.around->height, x, y) &&
+         !f->labels.around->from_hole[y * f->labels.around->width + x];
 }
 
 /* Where the edge would leave the picture if it went straight on through the hole. False: it would
  * reach something known. */
 static bool leaves_the_picture(const finder *f, const rc_change *c, rc_change *end) {
-  const rc_around *a = f->around;
+  const rc_around *a = f->labels.around;
   bool in_hole = false;
   *end = *c;
   for (int step = 0; c->ux != 0 || c->uy != 0; step++) {
@@ -223,15 +135,15 @@ static bool leaves_the_picture(const finder *f, const rc_change *c, rc_change *e
     if (!rc_inside(a->width, a->height, x, y)) return false;
     if (a->from_hole[y * a->width + x] == 0)
       in_hole = true;
-    else if (in_hole || step > 4 * BORDER_PX)
+    else if (in_hole || step > 4 * RC_BORDER_PX)
       return false;
   }
   return false;
 }
 
 static rc_change in_plane(const finder *f, const rc_change *c) {
-  float x = c->x + (float)f->around->box.x0 - f->chart->x0;
-  float y = c->y + (float)f->around->box.y0 - f->chart->y0;
+  float x = c->x + (float)f->labels.around->box.x0 - f->chart->x0;
+  float y = c->y + (float)f->labels.around->box.y0 - f->chart->y0;
   float w = fmaxf(1.f + f->chart->lx * x + f->chart->ly * y, 1e-3f);
   return (rc_change){x / w, y / w, 0, 0};
 }
@@ -317,7 +229,7 @@ static void pair_up(const finder *f, const rc_change *c, int count, unsigned tak
 
 recede_status rc_chords_find(rc_context *context, const rc_around *around, const rc_chart *chart,
                              const int8_t *label, rc_chords *chords) {
-  finder f = {around, chart, label};
+  finder f = {{around, label}, chart};
   rc_change changes[RC_MOST_CHANGES];
   rc_chords none = {.count = 0}, best = {.turn = INFINITY};
   *chords = none;
@@ -326,7 +238,7 @@ recede_status rc_chords_find(rc_context *context, const rc_around *around, const
   memcpy(changes, chords->changes, sizeof changes);
   drop_spurs(changes, &count);
   if (!count || count > RC_MOST_CHORDS) return RECEDE_OK;
-  for (int i = 0; i < count; i++) follow(&f, &changes[i]);
+  for (int i = 0; i < count; i++) rc_edge_follow(&f.labels, &changes[i]);
   pair_up(&f, changes, count, 0, &none, &best);
   memcpy(chords->end, best.end, sizeof best.end);
   chords->count = best.count, chords->piece_count = best.piece_count, chords->turn = best.turn;

@@ -59,10 +59,11 @@ static void spread(const finder *f, const rc_chords *c, bool doubtful, int32_t *
                    bool *kept_apart) {
   static const int dx[4] = {1, -1, 0, 0}, dy[4] = {0, 0, 1, -1};
   const rc_around *a = &f->around;
+  const rc_labels labels = {a, f->label};
   size_t first = 0, last = 0;
   for (int y = 0; y < a->height; y++)
     for (int x = 0; x < a->width; x++)
-      if (rc_on_border(a, f->label, x, y) && is_doubtful(c, (float)x, (float)y) == doubtful)
+      if (rc_on_border(&labels, x, y) && is_doubtful(c, (float)x, (float)y) == doubtful)
         queue[last++] = y * a->width + x;
   *kept_apart = true;
   size_t seeds = last;
