@@ -40,6 +40,16 @@ static double ragged_path(double u, double v, int k) {
   return fabs(u) + 3 * patches < 6 ? gravel(u, v, k) : lawn(u, v, k);
 }
 
+/* A round bed of lawn, of which the hole hides the near end; seen at a slant it is an ellipse. */
+static double bed(double u, double v, int k) {
+  return hypot(u, v - 20) < 20 ? lawn(u, v, k) : gravel(u, v, k);
+}
+
+/* And a larger one to the left of the hole. */
+static double large_bed(double u, double v, int k) {
+  return hypot(u + 25, v - 4) < 26 ? lawn(u, v, k) : gravel(u, v, k);
+}
+
 static picture draw(pattern *floor) {
   return picture_of_plane(320, 240, 3, RECEDE_U8, floor, 6, SLANT_DEG, 0);
 }
@@ -106,6 +116,13 @@ static void a_ragged_path_goes_on(void) {
   g_assert_cmpfloat(without, >, with + .1);
 }
 
+static void what_is_round_goes_round(void) {
+  double with = part_wrong(bed, middle, EDGE_PX, "");
+  g_assert_cmpfloat(with, <, .08); /* .35 along a straight chord */
+  g_assert_cmpfloat(part_wrong(bed, middle, EDGE_PX, NO_SIDES), >, with + .1);
+  g_assert_cmpfloat(part_wrong(large_bed, middle, EDGE_PX, ""), <, .1); /* .21 */
+}
+
 static void a_path_leaves_the_picture(void) {
   double with = part_wrong(path, bottom, EDGE_PX, "");
   g_assert_cmpfloat(with, <, .025); /* .03 where both sides share their sources */
@@ -168,6 +185,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/regions/verge", a_verge_stays_where_it_is);
   g_test_add_func("/regions/path", a_path_goes_on);
   g_test_add_func("/regions/ragged", a_ragged_path_goes_on);
+  g_test_add_func("/regions/round", what_is_round_goes_round);
   g_test_add_func("/regions/picture-end", a_path_leaves_the_picture);
   g_test_add_func("/regions/source", a_path_that_is_no_source);
   g_test_add_func("/regions/one", one_texture_has_none);

@@ -199,6 +199,16 @@ static bool add_bent_chord(rc_chords *to, const rc_change *a, const rc_change *b
   return true;
 }
 
+/* The only one, which goes round on a circle and does not turn from the edges. False: there is no
+ * circle. */
+static bool add_arc(const finder *f, rc_chords *to, const rc_change *a, const rc_change *b) {
+  rc_change points[RC_MOST_ARC_PIECES + 1];
+  int pieces = rc_edge_arc(&f->labels, a, b, points);
+  for (int i = 0; i < pieces; i++) add_piece(to, &points[i], &points[i + 1]);
+  to->count++;
+  return pieces > 0;
+}
+
 /* Tries all ways to pair up the changes that are not taken, or to lead them out of the picture. */
 static void pair_up(const finder *f, const rc_change *c, int count, unsigned taken,
                     const rc_chords *sofar, rc_chords *best) {
@@ -217,7 +227,9 @@ static void pair_up(const finder *f, const rc_change *c, int count, unsigned tak
     rc_change corner;
     if (taken >> k & 1) continue;
     with = *sofar;
-    /* Of more edges it is not told which two make a corner. */
+    /* Of more edges it is not told which two make an arc, or a corner. */
+    if (count == 2 && add_arc(f, &with, &c[i], &c[k])) pair_up(f, c, count, both, &with, best);
+    with = *sofar;
     if (count == 2 && make_a_corner(f, &c[i], &c[k], &corner) &&
         add_bent_chord(&with, &c[i], &c[k], &corner))
       pair_up(f, c, count, both, &with, best);

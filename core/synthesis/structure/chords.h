@@ -8,14 +8,16 @@
 #include "synthesis/structure/edges.h"
 
 #define RC_MOST_CHORDS 4
+/* An arc has the most. */
+#define RC_MOST_PIECES RC_MOST_ARC_PIECES
 #define RC_MOST_CHANGES 32
 
 typedef struct rc_chords {
-  rc_change end[RC_MOST_CHORDS][2]; /* of each straight piece */
+  rc_change end[RC_MOST_PIECES][2]; /* of each straight piece */
   int piece_count;
-  int count;                          /* of chords, each of one piece or, in a corner, of two. 0:
-                                       * they cannot be told */
-  float turn;                         /* from the edges' directions, of all together */
+  int count;  /* of chords, each of one piece, of two in a corner, or of those of an arc. 0:
+               * they cannot be told */
+  float turn; /* from the edges' directions, of all together */
   rc_change changes[RC_MOST_CHANGES]; /* all there are, spurs too; none: there are too many */
   int change_count;
 } rc_chords;

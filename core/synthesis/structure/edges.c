@@ -1,6 +1,7 @@
 #include "synthesis/structure/edges.h"
 
 #include <math.h>
+#include <string.h>
 
 /* A change's direction is that of the edge so far outwards. */
 #define FOLLOWED_PX 7.f
@@ -11,6 +12,20 @@
 #define WEDGE_PX 1.5f
 #define WEDGE .05f
 #define STRAIGHT_ON .94f
+/* An arc is told by so much of each edge. Seen at a slant it is one of an ellipse: where neither
+ * edge is straight so far, half as much will do. In the mean square the edges' pixels, which lie to
+ * both sides of them, are no farther than this from the circle, or from a straight line, and they
+ * lead along it within 45 degrees (a cosine). What is less bent is as good as straight; of more
+ * than half a circle too little is seen. */
+#define ARC_PX 20
+#define MOST_OFF_PX 1.05
+#define STRAIGHT_OFF_PX .7
+#define LEAST_ARC_PIXELS 16
+#define ALONG .7f
+#define LEAST_SAGITTA_PX 1.5f
+#define MOST_SWEEP 3.2f
+/* Pieces of an arc span no more than this, or as many as there may be. */
+#define PIECE_RAD .3f
 
 bool rc_on_border(const rc_labels *labels, int x, int y) {
   const rc_around *a = labels->around;
@@ -86,4 +101,124 @@ rc_change rc_edge_straight(const rc_labels *f, const rc_change *c) {
     if (line.ux * c->ux + line.uy * c->uy > STRAIGHT_ON) return line;
   }
   return *c;
+}
+
+/* The edge's pixels, the hole's border first. */
+typedef struct trace {
+  int16_t x[(2 * ARC_PX + 1) * (2 * ARC_PX + 1)], y[(2 * ARC_PX + 1) * (2 * ARC_PX + 1)];
+  int count;
+} trace;
+
+/* What is connected to the change and no farther from it than so many px. */
+static void follow_pixels(const rc_labels *f, const rc_change *c, int reach, trace *t) {
+  uint8_t seen[2 * ARC_PX + 1][2 * ARC_PX + 1];
+  int cx = (int)(c->x + .5f), cy = (int)(c->y + .5f);
+  memset(seen, 0, sizeof seen);
+  t->count = 0;
+  for (int y = -RC_BORDER_PX; y <= RC_BORDER_PX; y++)
+    for (int x = -RC_BORDER_PX; x <= RC_BORDER_PX; x++)
+      if (on_edge(f, cx + x, cy + y)) {
+        seen[y + ARC_PX][x + ARC_PX] = 1;
+        t->x[t->count] = (int16_t)(cx + x), t->y[t->count++] = (int16_t)(cy + y);
+      }
+  for (int first = 0; first < t->count; first++)
+    for (int y = t->y[first] - 1; y <= t->y[first] + 1; y++)
+      for (int x = t->x[first] - 1; x <= t->x[first] + 1; x++) {
+        int dx = x - cx, dy = y - cy;
+        if (dx * dx + dy * dy > reach * reach || seen[dy + ARC_PX][dx + ARC_PX] ||
+            !on_edge(f, x, y))
+          continue;
+        seen[dy + ARC_PX][dx + ARC_PX] = 1;
+        t->x[t->count] = (int16_t)x, t->y[t->count++] = (int16_t)y;
+      }
+}
+
+typedef struct circle {
+  double x, y, radius;
+} circle;
+
+/* The circle x^2 + y^2 = 2 a x + 2 b y + c of least squares, both edges weighing the same, from
+ * their middle so that the sums do not lose their digits. */
+static bool fit_circle(const trace edges[2], circle *to) {
+  double mx = 0, my = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, z = 0;
+  for (int e = 0; e < 2; e++)
+    for (int i = 0; i < edges[e].count; i++)
+      mx += .5 * edges[e].x[i] / edges[e].count, my += .5 * edges[e].y[i] / edges[e].count;
+  for (int e = 0; e < 2; e++)
+    for (int i = 0; i < edges[e].count; i++) {
+      double x = edges[e].x[i] - mx, y = edges[e].y[i] - my, weight = .5 / edges[e].count;
+      xx += weight * x * x, xy += weight * x * y, yy += weight * y * y;
+      xz += weight * x * (x * x + y * y), yz += weight * y * (x * x + y * y);
+      z += weight * (x * x + y * y);
+    }
+  double det = 2 * (xx * yy - xy * xy);
+  if (!(det > 1e-6 * z * z)) return false; /* all on one straight line */
+  double a = (xz * yy - yz * xy) / det, b = (yz * xx - xz * xy) / det;
+  *to = (circle){mx + a, my + b, sqrt(a * a + b * b + z)};
+  return true;
+}
+
+/* Of one edge's pixels. */
+static double off_circle(const trace *edge, const circle *c) {
+  double sum = 0;
+  for (int i = 0; i < edge->count; i++) {
+    double dx = edge->x[i] - c->x, dy = edge->y[i] - c->y, off = sqrt(dx * dx + dy * dy);
+    sum += (off - c->radius) * (off - c->radius) / edge->count;
+  }
+  return sqrt(sum);
+}
+
+/* Of one edge's pixels from the straight line of least squares. */
+static double off_straight(const trace *edge) {
+  double x = 0, y = 0, xx = 0, xy = 0, yy = 0, n = edge->count;
+  for (int i = 0; i < edge->count; i++) x += edge->x[i] / n, y += edge->y[i] / n;
+  for (int i = 0; i < edge->count; i++) {
+    double dx = edge->x[i] - x, dy = edge->y[i] - y;
+    xx += dx * dx / n, xy += dx * dy / n, yy += dy * dy / n;
+  }
+  return sqrt(fmax((xx + yy) / 2 - sqrt((xx - yy) * (xx - yy) / 4 + xy * xy), 0));
+}
+
+static bool fit_edges(const rc_labels *f, const rc_change *from, const rc_change *to, int reach,
+                      trace edges[2], circle *c) {
+  follow_pixels(f, from, reach, &edges[0]);
+  follow_pixels(f, to, reach, &edges[1]);
+  return edges[0].count >= LEAST_ARC_PIXELS && edges[1].count >= LEAST_ARC_PIXELS &&
+         fit_circle(edges, c) && off_circle(&edges[0], c) <= MOST_OFF_PX &&
+         off_circle(&edges[1], c) <= MOST_OFF_PX;
+}
+
+/* The circle that both edges lie on. */
+static bool find_circle(const rc_labels *f, const rc_change *from, const rc_change *to, circle *c) {
+  trace edges[2];
+  if (fit_edges(f, from, to, ARC_PX, edges, c)) return true;
+  return off_straight(&edges[0]) > STRAIGHT_OFF_PX && off_straight(&edges[1]) > STRAIGHT_OFF_PX &&
+         fit_edges(f, from, to, ARC_PX / 2, edges, c);
+}
+
+int rc_edge_arc(const rc_labels *labels, const rc_change *from, const rc_change *to,
+                rc_change points[RC_MOST_ARC_PIECES + 1]) {
+  circle c;
+  if (!find_circle(labels, from, to, &c)) return 0;
+  float ax = from->x - (float)c.x, ay = from->y - (float)c.y;
+  float bx = to->x - (float)c.x, by = to->y - (float)c.y;
+  /* Inwards from one end; along from there to the other, whose direction is outwards. */
+  float turn = ay * from->ux - ax * from->uy > 0 ? 1.f : -1.f;
+  float a = sqrtf(ax * ax + ay * ay), b = sqrtf(bx * bx + by * by);
+  float along_a = turn * (ay * from->ux - ax * from->uy) / a;
+  float along_b = turn * (bx * to->uy - by * to->ux) / b;
+  float sweep = turn * atan2f(ax * by - ay * bx, ax * bx + ay * by);
+  if (sweep < 0) sweep += 2 * (float)M_PI;
+  if (along_a < ALONG || along_b < ALONG || sweep > MOST_SWEEP ||
+      (float)c.radius * (1 - cosf(sweep / 2)) < LEAST_SAGITTA_PX)
+    return 0;
+  int pieces = (int)fminf(ceilf(sweep / PIECE_RAD), RC_MOST_ARC_PIECES);
+  for (int i = 0; i <= pieces; i++) {
+    float part = (float)i / (float)pieces, angle = turn * sweep * part;
+    float scale = (1 - part) * 1.f + part * b / a;
+    float x = scale * (ax * cosf(angle) - ay * sinf(angle));
+    float y = scale * (ax * sinf(angle) + ay * cosf(angle));
+    points[i] = (rc_change){(float)c.x + x, (float)c.y + y, 0, 0};
+  }
+  return pieces;
 }

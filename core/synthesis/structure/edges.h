@@ -35,5 +35,10 @@ void rc_edge_follow(const rc_labels *labels, rc_change *change);
 /* The straight line that the edge follows as far as it goes on the way it began: where it turns
  * soon, no farther. x, y: a place on it. */
 rc_change rc_edge_straight(const rc_labels *labels, const rc_change *change);
+/* The arc of a circle on which the edges at both ends lie: points of the pieces of the way from one
+ * to the other through the hole, both ends among them. Returns how many pieces, 0: no arc. */
+#define RC_MOST_ARC_PIECES 10
+int rc_edge_arc(const rc_labels *labels, const rc_change *from, const rc_change *to,
+                rc_change points[RC_MOST_ARC_PIECES + 1]);
 
 #endif
