@@ -72,11 +72,11 @@
  * .4 a meadow that is blurred behind a penguin is one. */
 #define CEILING_DOUBT .5
 /* What by chance is read wrongly is seldom level: so much of the doubt goes, if anything at all
- * tells the plane, and at least this share of the cells lies on it. Of photos held upright; of
- * those upside down half are then trusted floors. */
+ * tells the plane, and in full where this share of the cells lies on it, or lines tell it. Of
+ * photos held upright; of those upside down half are then trusted floors. */
 #define LEVEL_TRUST .53
 #define LEAST_TOLD .05
-#define LEVEL_SHARE .3
+#define LEVEL_SHARE .27
 
 enum { FLAT, RAISED, MODELS };
 
@@ -301,7 +301,7 @@ static double told_by_two_points(const search *s, const rc_point *reading) {
 }
 
 /* The farthest other reading that explains the picture almost as well, and lines no worse. Where
- * what lies beside the hole is asked, what is as unlikely as a ceiling must explain more. */
+ * what lies beside the hole is asked, what is less likely than the best must explain more. */
 static double ambiguity_deg(const search *s) {
   double farthest = 0, told = told_by_two_points(s, &s->best);
   for (int m = 0; m < MODELS; m++)
@@ -344,12 +344,13 @@ static double told_by_lines(const search *s) {
  * lie on the plane, or lines must tell it; parts of the picture must say the same, and nothing else
  * may explain it as well. A level floor needs less of all that. */
 static double judge(const search *s) {
-  double left = s->best.cost * s->best.cost, on_plane = share_on_plane(s) - NO_PLANE_SHARE;
+  double lines = told_by_lines(s), left = s->best.cost * s->best.cost;
+  double on_plane = share_on_plane(s) - NO_PLANE_SHARE;
   double share = fmin(1, fmax(0, on_plane / (PLANE_SHARE - NO_PLANE_SHARE)));
-  double level_share = fmin(1, fmax(0, on_plane / (LEVEL_SHARE - NO_PLANE_SHARE)));
+  double level_share = fmin(1, fmax(lines, on_plane / (LEVEL_SHARE - NO_PLANE_SHARE)));
   double doubt = CEILING_DOUBT * rc_lean_ceiling(lean_of(&s->best));
   double texture = share * rc_falling(left, RC_LARGE_MISFIT * RC_LARGE_MISFIT) * (1 - doubt);
-  double told = (1 - (1 - texture) * (1 - told_by_lines(s))) *
+  double told = (1 - (1 - texture) * (1 - lines)) *
                 rc_falling(disagreement_deg(s), LARGE_DISAGREEMENT_DEG) *
                 rc_falling(ambiguity_deg(s), LARGE_AMBIGUITY_DEG);
   double trust =

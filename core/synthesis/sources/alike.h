@@ -10,8 +10,9 @@
 /* Takes RC_SOURCE from pixels that look like nothing beside the hole, where all stays: of what is
  * there only some is looked at, and that may miss a post. band: where the hole's own
  * scales are, of the finest level; images and flags: the pyramid's levels, finest first; what is
- * unlike is found at the coarsest. All stay where too few of the hole's own scales would be left,
- * or where too little beside the hole is source. taken: the part of the sources that lost it. */
+ * unlike is found at the coarsest. Where too few of the hole's own scales would be left only the
+ * most unlike goes; all stay where too little beside the hole is source. taken: the part of the
+ * sources that lost it. */
 recede_status rc_keep_alike(rc_context *context, const rc_band *band, const rc_image *images,
                             const rc_mask *flags, int levels, double *taken);
 

@@ -66,6 +66,8 @@ static bool grow(const rc_places *p) {
       any = true;
       rc_places_mark_around(p, x, y);
     }
+  /* All goes, or nothing: a spot without its edge would leave that. */
+  for (int i = 0; i < p->rows * p->columns; i++) p->unlike[i] = p->unlike[i] > 0;
   return any;
 }
 

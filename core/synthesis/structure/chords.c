@@ -199,11 +199,19 @@ static bool add_bent_chord(rc_chords *to, const rc_change *a, const rc_change *b
   return true;
 }
 
+static bool in_hole(const finder *f, const rc_change *c) {
+  const rc_around *a = f->labels.around;
+  int x = (int)floorf(c->x + .5f), y = (int)floorf(c->y + .5f);
+  return rc_inside(a->width, a->height, x, y) && a->from_hole[y * a->width + x] <= RC_BORDER_PX;
+}
+
 /* The only one, which goes round on a circle and does not turn from the edges. False: there is no
- * circle. */
+ * circle, or it leads out of the hole. */
 static bool add_arc(const finder *f, rc_chords *to, const rc_change *a, const rc_change *b) {
   rc_change points[RC_MOST_ARC_PIECES + 1];
   int pieces = rc_edge_arc(&f->labels, a, b, points);
+  for (int i = 1; i < pieces; i++)
+    if (!in_hole(f, &points[i])) return false;
   for (int i = 0; i < pieces; i++) add_piece(to, &points[i], &points[i + 1]);
   to->count++;
   return pieces > 0;

@@ -9,11 +9,11 @@
 
 #define RC_MOST_CHORDS 4
 /* An arc has the most. */
-#define RC_MOST_PIECES RC_MOST_ARC_PIECES
+#define RC_MOST_CHORD_PIECES RC_MOST_ARC_PIECES
 #define RC_MOST_CHANGES 32
 
 typedef struct rc_chords {
-  rc_change end[RC_MOST_PIECES][2]; /* of each straight piece */
+  rc_change end[RC_MOST_CHORD_PIECES][2]; /* of each straight piece */
   int piece_count;
   int count;  /* of chords, each of one piece, of two in a corner, or of those of an arc. 0:
                * they cannot be told */

@@ -12,18 +12,23 @@
 #define WEDGE_PX 1.5f
 #define WEDGE .05f
 #define STRAIGHT_ON .94f
-/* An arc is told by so much of each edge. Seen at a slant it is one of an ellipse: where neither
- * edge is straight so far, half as much will do. In the mean square the edges' pixels, which lie to
- * both sides of them, are no farther than this from the circle, or from a straight line, and they
- * lead along it within 45 degrees (a cosine). What is less bent is as good as straight; of more
- * than half a circle too little is seen. */
+/* An arc is told by so much of each edge, which a circle must fit nearly as well as straight lines:
+ * no more than so many times their square is left, of a right angle 1.4 to 2.5. Seen at a slant it
+ * is one of an ellipse: where neither edge is straight so far, half as much will do. In the mean
+ * square the edges' pixels, which lie to both sides of them, are no farther than this from the
+ * circle, and farther than that from a straight line; they lead along it within 45 degrees (a
+ * cosine). An arc that bulges less is as good as straight; of more than half a circle too little is
+ * seen. */
 #define ARC_PX 20
 #define MOST_OFF_PX 1.05
 #define STRAIGHT_OFF_PX .7
+#define TIMES_STRAIGHT 1.3
 #define LEAST_ARC_PIXELS 16
 #define ALONG .7f
 #define LEAST_SAGITTA_PX 1.5f
 #define MOST_SWEEP 3.2f
+/* Changes are the middles of several pixels: so far they may lie off their circle. */
+#define ENDS_OFF_PX 4.f
 /* Pieces of an arc span no more than this, or as many as there may be. */
 #define PIECE_RAD .3f
 
@@ -103,13 +108,13 @@ rc_change rc_edge_straight(const rc_labels *f, const rc_change *c) {
   return *c;
 }
 
-/* The edge's pixels, the hole's border first. */
+/* The edge's pixels. */
 typedef struct trace {
-  int16_t x[(2 * ARC_PX + 1) * (2 * ARC_PX + 1)], y[(2 * ARC_PX + 1) * (2 * ARC_PX + 1)];
+  int x[(2 * ARC_PX + 1) * (2 * ARC_PX + 1)], y[(2 * ARC_PX + 1) * (2 * ARC_PX + 1)];
   int count;
 } trace;
 
-/* What is connected to the change and no farther from it than so many px. */
+/* What is connected to what lies beside the change, and no farther from it than so many px. */
 static void follow_pixels(const rc_labels *f, const rc_change *c, int reach, trace *t) {
   uint8_t seen[2 * ARC_PX + 1][2 * ARC_PX + 1];
   int cx = (int)(c->x + .5f), cy = (int)(c->y + .5f);
@@ -119,7 +124,7 @@ static void follow_pixels(const rc_labels *f, const rc_change *c, int reach, tra
     for (int x = -RC_BORDER_PX; x <= RC_BORDER_PX; x++)
       if (on_edge(f, cx + x, cy + y)) {
         seen[y + ARC_PX][x + ARC_PX] = 1;
-        t->x[t->count] = (int16_t)(cx + x), t->y[t->count++] = (int16_t)(cy + y);
+        t->x[t->count] = cx + x, t->y[t->count++] = cy + y;
       }
   for (int first = 0; first < t->count; first++)
     for (int y = t->y[first] - 1; y <= t->y[first] + 1; y++)
@@ -129,7 +134,7 @@ static void follow_pixels(const rc_labels *f, const rc_change *c, int reach, tra
             !on_edge(f, x, y))
           continue;
         seen[dy + ARC_PX][dx + ARC_PX] = 1;
-        t->x[t->count] = (int16_t)x, t->y[t->count++] = (int16_t)y;
+        t->x[t->count] = x, t->y[t->count++] = y;
       }
 }
 
@@ -188,10 +193,21 @@ static bool fit_edges(const rc_labels *f, const rc_change *from, const rc_change
          off_circle(&edges[1], c) <= MOST_OFF_PX;
 }
 
+/* Whether the circle fits both edges nearly as well as straight lines do, which may meet in a
+ * corner but say less together. */
+static bool are_bent(const trace edges[2], const circle *c) {
+  double round = 0, straight = 0;
+  for (int e = 0; e < 2; e++) {
+    round += off_circle(&edges[e], c) * off_circle(&edges[e], c);
+    straight += off_straight(&edges[e]) * off_straight(&edges[e]);
+  }
+  return round < TIMES_STRAIGHT * straight;
+}
+
 /* The circle that both edges lie on. */
 static bool find_circle(const rc_labels *f, const rc_change *from, const rc_change *to, circle *c) {
   trace edges[2];
-  if (fit_edges(f, from, to, ARC_PX, edges, c)) return true;
+  if (fit_edges(f, from, to, ARC_PX, edges, c)) return are_bent(edges, c);
   return off_straight(&edges[0]) > STRAIGHT_OFF_PX && off_straight(&edges[1]) > STRAIGHT_OFF_PX &&
          fit_edges(f, from, to, ARC_PX / 2, edges, c);
 }
@@ -209,10 +225,11 @@ int rc_edge_arc(const rc_labels *labels, const rc_change *from, const rc_change 
   float along_b = turn * (bx * to->uy - by * to->ux) / b;
   float sweep = turn * atan2f(ax * by - ay * bx, ax * bx + ay * by);
   if (sweep < 0) sweep += 2 * (float)M_PI;
-  if (along_a < ALONG || along_b < ALONG || sweep > MOST_SWEEP ||
-      (float)c.radius * (1 - cosf(sweep / 2)) < LEAST_SAGITTA_PX)
+  if (!(along_a >= ALONG && along_b >= ALONG && sweep <= MOST_SWEEP) ||
+      (float)c.radius * (1 - cosf(sweep / 2)) < LEAST_SAGITTA_PX ||
+      fabsf(a - (float)c.radius) > ENDS_OFF_PX || fabsf(b - (float)c.radius) > ENDS_OFF_PX)
     return 0;
-  int pieces = (int)fminf(ceilf(sweep / PIECE_RAD), RC_MOST_ARC_PIECES);
+  int pieces = (int)fminf(fmaxf(ceilf(sweep / PIECE_RAD), 3), RC_MOST_ARC_PIECES);
   for (int i = 0; i <= pieces; i++) {
     float part = (float)i / (float)pieces, angle = turn * sweep * part;
     float scale = (1 - part) * 1.f + part * b / a;
