@@ -114,8 +114,9 @@ static recede_status most_unlike(rc_context *context, const rc_places *p, const 
   for (size_t i = 0; i < (size_t)p->flags->width * (size_t)p->flags->height; i++)
     target += p->flags->data[i] & RC_TARGET ? 1 : 0;
   RC_TRY(count_places(context, p, band, UINT8_MAX, &before));
-  for (*most = UINT8_MAX; *most - too_few > 1;) {
-    int tried = (too_few + *most) / 2;
+  *most = UINT8_MAX;
+  /* Mostly all that is unlike may go: that is tried first. */
+  for (int tried = 0; *most - too_few > 1; tried = (too_few + *most) / 2) {
     RC_TRY(count_places(context, p, band, tried, &after));
     if ((double)after >= ENOUGH * (double)target || (before && 2 * after >= before))
       *most = tried;

@@ -232,7 +232,7 @@ int rc_edge_arc(const rc_labels *labels, const rc_change *from, const rc_change 
   int pieces = (int)fminf(fmaxf(ceilf(sweep / PIECE_RAD), 3), RC_MOST_ARC_PIECES);
   for (int i = 0; i <= pieces; i++) {
     float part = (float)i / (float)pieces, angle = turn * sweep * part;
-    float scale = (1 - part) * 1.f + part * b / a;
+    float scale = 1 - part + part * b / a; /* from one end's radius to the other's */
     float x = scale * (ax * cosf(angle) - ay * sinf(angle));
     float y = scale * (ax * sinf(angle) + ay * cosf(angle));
     points[i] = (rc_change){(float)c.x + x, (float)c.y + y, 0, 0};
