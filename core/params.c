@@ -120,6 +120,7 @@ static const recede_param_info table[] = {
     STAGE("engine-regular", engine_regular,
           "of what comes again both ways copy anything by whole periods"),
     STAGE("engine-lines", engine_lines, "continue straight lines that cross the hole"),
+    STAGE("engine-branches", engine_branches, "and joints that end at one of these"),
     STAGE("engine-rails", engine_rails,
           "copy boards and what else runs along its lines along them"),
     STAGE("engine-gauge", engine_gauge, "and from other rows where boards have one width"),

@@ -33,6 +33,7 @@ static bool may_be_laid(const rc_level *level, const rc_place *place) {
 static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
   const rc_chart *chart = &level->chart;
   float unit = (float)(1 << exponent);
+  float from = line->ends_inside ? 0 : -.1f;
   bool sure = rc_crossing_is_sure(line);
   uint8_t wanted = sure ? RC_ALLOWED : RC_SOURCE;
   rc_crossing c = rc_crossing_coarser(*line, exponent);
@@ -49,7 +50,7 @@ static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
       float px = (float)x, py = (float)y;
       float reach = c.reach_px[rc_crossing_is_right(&c, px, py)] * rc_chart_w(chart, px, py);
       reach = fmaxf(fmaxf(LOCKED_PX / unit, LEAST_LOCKED_PX), reach + LOCKED_BESIDE_PX / unit);
-      if (!rc_level_is_target(level, x, y) || t < -.1f || t > 1.1f ||
+      if (!rc_level_is_target(level, x, y) || t < from || t > 1.1f ||
           rc_crossing_distance(&c, px, py) > reach)
         continue;
       int piece = (int)(fminf(fmaxf(t, 0), .999f) * (float)c.pieces);
@@ -65,12 +66,14 @@ static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
     }
 }
 
-recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int count, int exponent,
+recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int line_count,
+                            const rc_crossing *branches, int branch_count, int exponent,
                             rc_level *level) {
   size_t box = (size_t)level->box_w * (size_t)level->box_h;
   RC_TRY(RC_NEW_ZERO(context, box, &level->locked));
   /* The strongest last: it stays whole. */
-  for (int i = count - 1; i >= 0; i--) lock_line(&lines[i], exponent, level);
+  for (int i = branch_count - 1; i >= 0; i--) lock_line(&branches[i], exponent, level);
+  for (int i = line_count - 1; i >= 0; i--) lock_line(&lines[i], exponent, level);
   return RECEDE_OK;
 }
 

@@ -76,6 +76,14 @@ static bool comes_again_by(const beside *at, rc_copy period) {
   return !seen;
 }
 
+bool rc_end_stands_alone(const rc_seen *picture, const rc_chart *chart, const rc_crossing *line,
+                         int reach_px) {
+  beside at = {picture, line, rc_chart_flat(*chart), rc_crossing_direction(chart, line)};
+  float w = rc_chart_w(chart, line->bx, line->by);
+  int seen = 0;
+  return w > 0 && count_again(&at, 1, 1 / w, reach_px, &seen) <= MOST_AGAIN && seen >= reach_px / 2;
+}
+
 bool rc_stands_alone(const rc_seen *picture, const rc_chart *chart, const rc_crossing *line,
                      int reach_px, const rc_copy periods[2]) {
   beside at = {picture, line, rc_chart_flat(*chart), rc_crossing_direction(chart, line)};

@@ -10,5 +10,8 @@
  * not seem to. All is of the same level. */
 bool rc_stands_alone(const rc_seen *picture, const rc_chart *chart, const rc_crossing *line,
                      int reach_px, const rc_copy periods[2]);
+/* The same of its end b alone. */
+bool rc_end_stands_alone(const rc_seen *picture, const rc_chart *chart, const rc_crossing *line,
+                         int reach_px);
 
 #endif

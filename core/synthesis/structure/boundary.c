@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "synthesis/structure/axes.h"
+#include "synthesis/structure/ends.h"
 #include "synthesis/structure/follow.h"
 #include "synthesis/structure/repeats.h"
 

@@ -12,7 +12,8 @@
 /* Signal to noise of what is no chance: markings and kerbs have 100 and more. */
 #define RC_CLEAR_STRENGTH 100.f
 
-/* A line from the hole's border at a to that at b, px of the finest level. */
+/* A line from the hole's border at a to that at b, px of the finest level, or one that ends at a
+ * where it meets another. */
 typedef struct rc_crossing {
   float ax, ay, bx, by;
   float strength;  /* signal to noise of its weaker side */
@@ -21,6 +22,7 @@ typedef struct rc_crossing {
   float as_strong; /* the part of the rest of the hole's border where some line is as strong */
   bool alone;      /* hardly any parallel to it looks the same */
   bool faint;      /* it is known only by what tells two textures apart */
+  bool ends_inside; /* at a */
   bool band;       /* it is wide, and hardly anything at the hole's border is as strong */
   float axis[3];   /* the weights of colours it was seen by */
   /* How far it reaches to its left and right, px where w = 1; 0 where that is not told. */

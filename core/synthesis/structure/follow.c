@@ -40,6 +40,9 @@
  * much farther away, or farther. */
 #define FARTHER_PX 10.f
 #define FARTHEST_PX 30.f
+/* Of a branch that is clear so many times the same piece may be moved in, for what it leaves ends,
+ * too; so others come of edges of stones. */
+#define MOST_GROUPS 2
 /* Sources may be this much smaller than what they fill; how much larger depends on the way. */
 #define MOST_MAGNIFIED 1.7f
 /* Each way to follow it, until one does. Of a line that leads to the viewer sources are larger and
@@ -257,4 +260,43 @@ bool rc_follow(const rc_seen *picture, const rc_chart *chart, int windows, rc_cr
     return true;
   }
   return false;
+}
+
+/* Its pieces in groups of so many, each from beside the hole again: a clear joint may be shorter than
+ * the way it has to go. */
+static bool follow_groups(const frame *f, int size, const rc_profile *own, float *sum) {
+  float bend = 0, kept;
+  *sum = 0;
+  for (int piece = 0; piece < f->line->pieces; piece++) {
+    int group = piece - piece % size;
+    if (piece == group) bend = 0;
+    if (!follow_piece(f, (float)group / (float)f->line->pieces, piece, own, &bend, &kept))
+      return false;
+    *sum += fmaxf(fminf(kept, 1), 0) / (float)f->line->pieces;
+  }
+  return true;
+}
+
+bool rc_follow_branch(const rc_seen *picture, const rc_chart *chart, int windows,
+                      rc_crossing *branch) {
+  rc_profile own;
+  rc_crossing best = *branch;
+  frame f = {.ruler = {.value = rc_seen_source, .picture = picture},
+             .chart = chart,
+             .line = branch,
+             .most_reduced = ways->most_reduced,
+             .windows = windows};
+  float most = LEAST_KEPT, kept;
+  bool found = false, is_clear = branch->strength >= RC_CLEAR_STRENGTH;
+  branch->pieces = ways->pieces;
+  set_frame(&f);
+  if (!pin(&f, 1, &branch->bx, &branch->by, &own)) return false;
+  set_frame(&f);
+  if (!goes_on(&f, 1, branch->bx, branch->by, &own)) return false;
+  for (int groups = 1; groups <= (is_clear ? MOST_GROUPS : 1) && !found; groups *= 2) {
+    if (!follow_groups(&f, branch->pieces / groups, &own, &kept) || kept <= most) continue;
+    best = *branch, best.kept = kept, found = true;
+  }
+  *branch = best;
+  return found;
 }

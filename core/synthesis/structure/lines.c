@@ -4,22 +4,12 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/parallel.h"
-#include "base/real.h"
 #include "synthesis/structure/alone.h"
+#include "synthesis/structure/ends.h"
 #include "synthesis/structure/follow.h"
 
-/* Profiles are averaged along a run outside the hole. */
-#define RUN 16                 /* samples */
-#define MOST_MISSING (RUN / 4) /* of them, where there is no source */
-#define STEP_PX 2.f            /* between them */
-#define DIRECTIONS 128
 /* Lines are looked for at the finest level whose hole has at most so many border pixels. */
 #define MOST_BORDER 800
-/* Large stones have straight edges of 20 to 100, and one may by chance point at another: where
- * more than this part of the rest of the hole's border has a line as strong, one alone is none. A
- * stone .17; cracks and a row of tiles .02 to .08. */
-#define MOST_AS_STRONG .12f
 /* How alike both sides' profiles must be: their correlation, and one's amplitude over the other's,
  * for lines fade. */
 #define LEAST_LIKENESS .85f
@@ -32,80 +22,8 @@
 /* Ends are moved by up to so much to where the line is clearest. */
 #define REFINED_STEP_PX .5f
 #define REFINED_PLACES 17 /* 4 px to each side */
-/* Of border pixels so near to each other the strongest is looked at. */
-#define APART_PX 2
 
-typedef struct profile {
-  float mean[RC_PROFILE];
-  float strength; /* signal to noise; 0: not enough known pixels */
-  float clarity;  /* how much changes in its middle */
-} profile;
-
-typedef struct finder {
-  rc_seen picture;
-  float least_strength;
-  const int32_t *border; /* pixels */
-  int border_count;
-  float (*direction)[2];
-  profile *best; /* of each border pixel, its strongest direction */
-  int *best_direction;
-} finder;
-
-/* Of the change from one sample to the next. */
-static const float middle[RC_PROFILE] = {0, .2f, .6f, 1, 1, .6f, .2f};
-
-/* The run that begins at (x, y) and leaves along outwards u, read across u. */
-static profile measure(const finder *f, float x, float y, float ux, float uy, float outwards) {
-  profile p = {.strength = 0};
-  const rc_mask *flags = f->picture.flags;
-  int missing[RC_PROFILE] = {0};
-  float square[RC_PROFILE] = {0}, noise = 0, centre = 0, signal = 0;
-  for (int k = 0; k < RUN; k++)
-    for (int o = 0; o < RC_PROFILE; o++) {
-      float along = outwards * (RC_PROFILE_FROM_PX + STEP_PX * (float)k);
-      float across = (float)(o - RC_PROFILE_HALF);
-      int px = rc_floor(x + ux * along - uy * across + .5f);
-      int py = rc_floor(y + uy * along + ux * across + .5f);
-      size_t at = (size_t)py * (size_t)flags->width + (size_t)px;
-      if (!rc_inside(flags->width, flags->height, px, py) || !(flags->data[at] & RC_SOURCE)) {
-        if (++missing[o] > MOST_MISSING) return p;
-        continue;
-      }
-      float value = f->picture.value[at];
-      p.mean[o] += value, square[o] += value * value;
-    }
-  for (int o = 0; o < RC_PROFILE; o++) {
-    float count = (float)(RUN - missing[o]);
-    p.mean[o] /= count;
-    noise += square[o] / count - p.mean[o] * p.mean[o];
-    centre += p.mean[o] / RC_PROFILE;
-  }
-  for (int o = 0; o < RC_PROFILE; o++) {
-    p.mean[o] -= centre;
-    float change = o ? p.mean[o] - p.mean[o - 1] : 0;
-    signal += p.mean[o] * p.mean[o];
-    p.clarity += middle[o] * change * change;
-  }
-  /* Neighbouring samples are alike: half of them count. */
-  p.strength = signal / fmaxf(noise / (RUN / 2), 1e-6f);
-  return p;
-}
-
-static void search_border(void *user, int item, int thread) {
-  finder *f = user;
-  float x = (float)(f->border[item] % f->picture.flags->width);
-  float y = (float)(f->border[item] / f->picture.flags->width);
-  (void)thread;
-  f->best[item] = (profile){.strength = 0};
-  for (int d = 0; d < DIRECTIONS; d++) {
-    profile p = measure(f, x, y, f->direction[d][0], f->direction[d][1], 1);
-    if (p.strength <= f->best[item].strength) continue;
-    f->best[item] = p;
-    f->best_direction[item] = d;
-  }
-}
-
-static bool alike(const profile *a, const profile *b) {
+static bool alike(const rc_run *a, const rc_run *b) {
   float aa = 0, bb = 0, ab = 0, most = MOST_UNLIKE * MOST_UNLIKE;
   for (int o = 0; o < RC_PROFILE; o++)
     aa += a->mean[o] * a->mean[o], bb += b->mean[o] * b->mean[o], ab += a->mean[o] * b->mean[o];
@@ -113,7 +31,7 @@ static bool alike(const profile *a, const profile *b) {
 }
 
 /* Its correlation with a step. */
-static float rise_of(const profile *p) {
+static float rise_of(const rc_run *p) {
   float dot = 0, square = 1e-12f;
   for (int o = 0; o < RC_PROFILE; o++) {
     dot += o < RC_PROFILE_HALF ? -p->mean[o] : o > RC_PROFILE_HALF ? p->mean[o] : 0;
@@ -135,8 +53,8 @@ static bool crosses_the_hole(const rc_mask *flags, const rc_crossing *c) {
 
 /* Moves both ends across the line to where it is clearest on both sides. The direction changes with
  * that, so it is done twice. */
-static void refine(const finder *f, rc_crossing *c) {
-  profile a[REFINED_PLACES], b[REFINED_PLACES];
+static void refine(const rc_ends *ends, float least_strength, rc_crossing *c) {
+  rc_run a[REFINED_PLACES], b[REFINED_PLACES];
   for (int round = 0; round < 2; round++) {
     float dx = c->bx - c->ax, dy = c->by - c->ay, length = sqrtf(dx * dx + dy * dy), most = 0;
     float ux = dx / length, uy = dy / length;
@@ -144,14 +62,14 @@ static void refine(const finder *f, rc_crossing *c) {
     c->strength = 0;
     for (int i = 0; i < REFINED_PLACES; i++) {
       float across = REFINED_STEP_PX * (float)(i - REFINED_PLACES / 2);
-      a[i] = measure(f, from.ax - across * uy, from.ay + across * ux, ux, uy, -1);
-      b[i] = measure(f, from.bx - across * uy, from.by + across * ux, ux, uy, 1);
+      a[i] = rc_run_measure(&ends->picture, from.ax - across * uy, from.ay + across * ux, ux, uy, -1);
+      b[i] = rc_run_measure(&ends->picture, from.bx - across * uy, from.by + across * ux, ux, uy, 1);
     }
     for (int i = 0; i < REFINED_PLACES; i++)
       for (int k = 0; k < REFINED_PLACES; k++) {
         float strength = fminf(a[i].strength, b[k].strength);
         float clarity = fminf(a[i].clarity, b[k].clarity);
-        if (strength < f->least_strength || clarity <= most || !alike(&a[i], &b[k])) continue;
+        if (strength < least_strength || clarity <= most || !alike(&a[i], &b[k])) continue;
         float p = REFINED_STEP_PX * (float)(i - REFINED_PLACES / 2);
         float q = REFINED_STEP_PX * (float)(k - REFINED_PLACES / 2);
         most = clarity;
@@ -197,51 +115,25 @@ static void keep(rc_crossing lines[RC_MOST_LINES], int *count, rc_crossing c) {
   if (*count < RC_MOST_LINES) (*count)++;
 }
 
-/* Whether a border pixel is the strongest around. */
-static bool stands_out(const finder *f, int item) {
-  int width = f->picture.flags->width, own = f->border[item];
-  float strength = f->best[item].strength;
-  if (strength < f->least_strength) return false;
-  for (int i = 0; i < f->border_count; i++) {
-    int dx = f->border[i] % width - own % width, dy = f->border[i] / width - own / width;
-    if (dx * dx + dy * dy > APART_PX * APART_PX || i == item) continue;
-    float other = f->best[i].strength;
-    if (other > strength || (other == strength && i < item)) return false;
-  }
-  return true;
-}
-
-/* Of the border pixels away from a line the part that is as strong; of few pixels no small one. */
-static float part_as_strong(const finder *f, const rc_crossing *c) {
-  int width = f->picture.flags->width, away = 0, as_strong = 0;
-  for (int i = 0; i < f->border_count; i++) {
-    float x = (float)(f->border[i] % width), y = (float)(f->border[i] / width);
-    if (rc_crossing_distance(c, x, y) <= RC_PROFILE) continue;
-    away++, as_strong += f->best[i].strength >= c->strength;
-  }
-  if (!as_strong) return away ? fminf(.5f / (float)away, MOST_AS_STRONG) : MOST_AS_STRONG;
-  return (float)as_strong / (float)away;
-}
-
-static void pair_up(const finder *f, rc_crossing lines[RC_MOST_LINES], int *count) {
-  int width = f->picture.flags->width;
-  for (int i = 0; i < f->border_count; i++) {
-    if (!stands_out(f, i)) continue;
-    for (int j = i + 1; j < f->border_count; j++) {
-      if (f->best[j].strength < f->least_strength) continue;
-      const float *u = f->direction[f->best_direction[i]], *v = f->direction[f->best_direction[j]];
-      rc_crossing c = {.ax = (float)(f->border[i] % width),
-                       .ay = (float)(f->border[i] / width),
-                       .bx = (float)(f->border[j] % width),
-                       .by = (float)(f->border[j] / width)};
+static void pair_up(const rc_ends *ends, float least_strength, rc_crossing lines[RC_MOST_LINES], int *count) {
+  int width = ends->picture.flags->width;
+  for (int i = 0; i < ends->border_count; i++) {
+    if (!rc_end_stands_out(ends, i, least_strength)) continue;
+    for (int j = i + 1; j < ends->border_count; j++) {
+      if (ends->best[j].strength < least_strength) continue;
+      const float *u = ends->direction[ends->best_direction[i]], *v = ends->direction[ends->best_direction[j]];
+      rc_crossing c = {.ax = (float)(ends->border[i] % width),
+                       .ay = (float)(ends->border[i] / width),
+                       .bx = (float)(ends->border[j] % width),
+                       .by = (float)(ends->border[j] / width)};
       float dx = c.ax - c.bx, dy = c.ay - c.by, length = sqrtf(dx * dx + dy * dy);
       if (length < SHORTEST_PX || dx * u[0] + dy * u[1] < STRAIGHT * length ||
-          dx * v[0] + dy * v[1] > -STRAIGHT * length || !crosses_the_hole(f->picture.flags, &c) ||
-          !stands_out(f, j))
+          dx * v[0] + dy * v[1] > -STRAIGHT * length || !crosses_the_hole(ends->picture.flags, &c) ||
+          !rc_end_stands_out(ends, j, least_strength))
         continue;
-      refine(f, &c);
-      c.as_strong = part_as_strong(f, &c);
-      if (c.strength >= f->least_strength) keep(lines, count, c);
+      refine(ends, least_strength, &c);
+      c.as_strong = rc_ends_as_strong(ends, &c);
+      if (c.strength >= least_strength) keep(lines, count, c);
     }
   }
 }
@@ -266,75 +158,9 @@ static void follow(const rc_seen *seen, const rc_chart *chart, int exponent,
   *count = kept;
 }
 
-/* Target pixels that touch known ones; border may be NULL. */
-static int collect_border(const rc_mask *flags, int32_t *border) {
-  rc_box box = rc_box_of(flags, RC_TARGET);
-  int count = 0;
-  for (int y = box.y0 > 1 ? box.y0 : 1; y < box.y1 && y + 1 < flags->height; y++)
-    for (int x = box.x0 > 1 ? box.x0 : 1; x < box.x1 && x + 1 < flags->width; x++) {
-      if (!(*rc_flag(flags, x, y) & RC_TARGET)) continue;
-      int beside = *rc_flag(flags, x - 1, y) | *rc_flag(flags, x + 1, y) |
-                   *rc_flag(flags, x, y - 1) | *rc_flag(flags, x, y + 1);
-      if (!(beside & RC_KNOWN)) continue;
-      if (border) border[count] = y * flags->width + x;
-      count++;
-    }
-  return count;
-}
-
-bool rc_seen_source(const void *user, int x, int y, float *value) {
-  const rc_seen *picture = user;
-  if (!rc_inside(picture->flags->width, picture->flags->height, x, y)) return false;
-  size_t at = (size_t)y * (size_t)picture->flags->width + (size_t)x;
-  *value = picture->value[at];
-  return (picture->flags->data[at] & RC_SOURCE) != 0;
-}
-
-recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *flags,
-                     const float axis[3], rc_seen *seen) {
-  size_t pixels = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;
-  float *value;
-  RC_TRY(RC_NEW_ZERO(context, pixels, &value));
-  for (size_t i = 0; i < pixels; i++)
-    for (size_t k = 0; k < channels; k++) value[i] += axis[k] * image->data[i * channels + k];
-  *seen = (rc_seen){flags, value};
-  return RECEDE_OK;
-}
-
-recede_status rc_see_contrast(rc_context *context, rc_seen *seen) {
-  int width = seen->flags->width, height = seen->flags->height;
-  float *contrast;
-  RC_TRY(RC_NEW_ZERO(context, (size_t)width * (size_t)height, &contrast));
-  for (int y = 1; y + 1 < height; y++)
-    for (int x = 1; x + 1 < width; x++) {
-      float sum = 0, square = 0, count = 0, value;
-      for (int k = 0; k < 9; k++) {
-        if (!rc_seen_source(seen, x - 1 + k % 3, y - 1 + k / 3, &value)) continue;
-        sum += value, square += value * value, count++;
-      }
-      if (count > 0)
-        contrast[(size_t)y * (size_t)width + (size_t)x] =
-            sqrtf(fmaxf(square / count - sum / count * (sum / count), 0.f));
-    }
-  seen->value = contrast;
-  return rc_poll(context);
-}
-
-static void set_directions(float (*direction)[2]) {
-  const double c = .9987954562051724, s = .049067674327418015; /* of 360 / DIRECTIONS degrees */
-  double x = 1, y = 0;
-  for (int d = 0; d < DIRECTIONS; d++) {
-    direction[d][0] = (float)x, direction[d][1] = (float)y;
-    double next = x * c - y * s;
-    y = x * s + y * c, x = next;
-  }
-}
-
-int rc_border_length(const rc_mask *flags) { return collect_border(flags, NULL); }
-
 int rc_lines_level(const rc_mask *masks, int levels) {
   for (int exponent = 0; exponent < levels; exponent++) {
-    int border_count = collect_border(&masks[exponent], NULL);
+    int border_count = rc_border_length(&masks[exponent]);
     if (border_count <= MOST_BORDER) return border_count ? exponent : -1;
   }
   return -1;
@@ -342,22 +168,12 @@ int rc_lines_level(const rc_mask *masks, int levels) {
 
 recede_status rc_lines_at(rc_context *context, const rc_seen *seen, bool faint,
                           rc_crossing lines[RC_MOST_LINES], int *count) {
-  float direction[DIRECTIONS][2];
-  int32_t *border;
-  finder f = {.picture = *seen, .least_strength = RC_LEAST_STRENGTH, .direction = direction};
+  rc_ends ends;
   rc_block *mark = rc_mark(context);
   *count = 0;
-  f.border_count = collect_border(seen->flags, NULL);
-  RC_TRY(RC_NEW(context, f.border_count, &border));
-  RC_TRY(RC_NEW(context, f.border_count, &f.best));
-  RC_TRY(RC_NEW_ZERO(context, f.border_count, &f.best_direction));
-  collect_border(seen->flags, border);
-  set_directions(direction);
-  f.border = border;
-  RC_TRY(rc_parallel(context, f.border_count, search_border, &f));
-  pair_up(&f, lines, count);
-  f.least_strength = RC_LEAST_FAINT_STRENGTH;
-  if (faint && !*count) pair_up(&f, lines, count);
+  RC_TRY(rc_ends_find(context, seen, &ends));
+  pair_up(&ends, RC_LEAST_STRENGTH, lines, count);
+  if (faint && !*count) pair_up(&ends, RC_LEAST_FAINT_STRENGTH, lines, count);
   rc_release(context, mark);
   return RECEDE_OK;
 }
@@ -383,7 +199,7 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
     lines[i].alone = rc_stands_alone(&seen, &here, &lines[i], reach_px, periods ? here_by : NULL);
   rc_crossings_keep_parallel(&here, lines, count);
   follow(&seen, &here, exponent, lines, count);
-  if (*count == 1 && lines->as_strong > MOST_AS_STRONG) *count = 0;
+  if (*count == 1 && lines->as_strong > RC_MOST_AS_STRONG) *count = 0;
   for (int i = 0; i < *count; i++) memcpy(lines[i].axis, axis, sizeof lines[i].axis);
   rc_release(context, mark);
   return rc_poll(context);

@@ -5,29 +5,15 @@
 #define RECEDE_SYNTHESIS_STRUCTURE_LINES_H
 
 #include "synthesis/structure/crossing.h"
+#include "synthesis/structure/seen.h"
 
 /* Signal to noise of a line on both sides of the hole. Edges of stones reach 7. Where nothing does
  * fainter ones may be asked for: even a kerb among setts has no more. */
 #define RC_LEAST_STRENGTH 8.f
 #define RC_LEAST_FAINT_STRENGTH 5.f
 
-/* One level of the picture, as lines are looked for in it. */
-typedef struct rc_seen {
-  const rc_mask *flags;
-  const float *value;
-} rc_seen;
-
-/* Of an rc_seen; false: (x, y) is no source. */
-bool rc_seen_source(const void *seen, int x, int y, float *value);
-/* The level's pixels by these weights of their channels. */
-recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *flags,
-                     const float axis[3], rc_seen *seen);
-/* The same picture by its contrast: the deviation within 3 x 3 px. */
-recede_status rc_see_contrast(rc_context *context, rc_seen *seen);
 /* The finest level that lines are looked for in; -1: there is none, or no border. */
 int rc_lines_level(const rc_mask *masks, int levels);
-/* Target pixels that touch known ones. */
-int rc_border_length(const rc_mask *flags);
 /* All that look the same on both sides of the hole, strongest first, px of that level. faint: if
  * there are none, fainter ones. */
 recede_status rc_lines_at(rc_context *context, const rc_seen *seen, bool faint,

@@ -1,0 +1,132 @@
+#include "synthesis/structure/ends.h"
+
+#include <math.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/real.h"
+#include "synthesis/structure/follow.h"
+
+/* Profiles are averaged along a run outside the hole. */
+#define RUN 16                 /* samples */
+#define MOST_MISSING (RUN / 4) /* of them, where there is no source */
+#define STEP_PX 2.f            /* between them */
+/* Of border pixels so near to each other the strongest is looked at. */
+#define APART_PX 2
+
+/* Of the change from one sample to the next. */
+static const float middle[RC_PROFILE] = {0, .2f, .6f, 1, 1, .6f, .2f};
+
+rc_run rc_run_measure(const rc_seen *seen, float x, float y, float ux, float uy, float outwards) {
+  rc_run p = {.strength = 0};
+  const rc_mask *flags = seen->flags;
+  int missing[RC_PROFILE] = {0};
+  float square[RC_PROFILE] = {0}, noise = 0, centre = 0, signal = 0;
+  for (int k = 0; k < RUN; k++)
+    for (int o = 0; o < RC_PROFILE; o++) {
+      float along = outwards * (RC_PROFILE_FROM_PX + STEP_PX * (float)k);
+      float across = (float)(o - RC_PROFILE_HALF);
+      int px = rc_floor(x + ux * along - uy * across + .5f);
+      int py = rc_floor(y + uy * along + ux * across + .5f);
+      size_t at = (size_t)py * (size_t)flags->width + (size_t)px;
+      if (!rc_inside(flags->width, flags->height, px, py) || !(flags->data[at] & RC_SOURCE)) {
+        if (++missing[o] > MOST_MISSING) return p;
+        continue;
+      }
+      float value = seen->value[at];
+      p.mean[o] += value, square[o] += value * value;
+    }
+  for (int o = 0; o < RC_PROFILE; o++) {
+    float count = (float)(RUN - missing[o]);
+    p.mean[o] /= count;
+    noise += square[o] / count - p.mean[o] * p.mean[o];
+    centre += p.mean[o] / RC_PROFILE;
+  }
+  for (int o = 0; o < RC_PROFILE; o++) {
+    p.mean[o] -= centre;
+    float change = o ? p.mean[o] - p.mean[o - 1] : 0;
+    signal += p.mean[o] * p.mean[o];
+    p.clarity += middle[o] * change * change;
+  }
+  /* Neighbouring samples are alike: half of them count. */
+  p.strength = signal / fmaxf(noise / (RUN / 2), 1e-6f);
+  return p;
+}
+
+static void search_border(void *user, int item, int thread) {
+  rc_ends *ends = user;
+  float x = (float)(ends->border[item] % ends->picture.flags->width);
+  float y = (float)(ends->border[item] / ends->picture.flags->width);
+  (void)thread;
+  ends->best[item] = (rc_run){.strength = 0};
+  for (int d = 0; d < RC_END_DIRECTIONS; d++) {
+    rc_run p = rc_run_measure(&ends->picture, x, y, ends->direction[d][0], ends->direction[d][1], 1);
+    if (p.strength <= ends->best[item].strength) continue;
+    ends->best[item] = p;
+    ends->best_direction[item] = d;
+  }
+}
+
+bool rc_end_stands_out(const rc_ends *ends, int item, float least_strength) {
+  int width = ends->picture.flags->width, own = ends->border[item];
+  float strength = ends->best[item].strength;
+  if (strength < least_strength) return false;
+  for (int i = 0; i < ends->border_count; i++) {
+    int dx = ends->border[i] % width - own % width, dy = ends->border[i] / width - own / width;
+    if (dx * dx + dy * dy > APART_PX * APART_PX || i == item) continue;
+    float other = ends->best[i].strength;
+    if (other > strength || (other == strength && i < item)) return false;
+  }
+  return true;
+}
+
+float rc_ends_as_strong(const rc_ends *ends, const rc_crossing *c) {
+  int width = ends->picture.flags->width, away = 0, as_strong = 0;
+  for (int i = 0; i < ends->border_count; i++) {
+    float x = (float)(ends->border[i] % width), y = (float)(ends->border[i] / width);
+    if (rc_crossing_distance(c, x, y) <= RC_PROFILE) continue;
+    away++, as_strong += ends->best[i].strength >= c->strength;
+  }
+  if (!as_strong) return away ? fminf(.5f / (float)away, RC_MOST_AS_STRONG) : RC_MOST_AS_STRONG;
+  return (float)as_strong / (float)away;
+}
+
+/* Target pixels that touch known ones; border may be NULL. */
+static int collect_border(const rc_mask *flags, int32_t *border) {
+  rc_box box = rc_box_of(flags, RC_TARGET);
+  int count = 0;
+  for (int y = box.y0 > 1 ? box.y0 : 1; y < box.y1 && y + 1 < flags->height; y++)
+    for (int x = box.x0 > 1 ? box.x0 : 1; x < box.x1 && x + 1 < flags->width; x++) {
+      if (!(*rc_flag(flags, x, y) & RC_TARGET)) continue;
+      int beside = *rc_flag(flags, x - 1, y) | *rc_flag(flags, x + 1, y) |
+                   *rc_flag(flags, x, y - 1) | *rc_flag(flags, x, y + 1);
+      if (!(beside & RC_KNOWN)) continue;
+      if (border) border[count] = y * flags->width + x;
+      count++;
+    }
+  return count;
+}
+
+static void set_directions(float (*direction)[2]) {
+  const double c = .9987954562051724, s = .049067674327418015; /* of 360 / RC_END_DIRECTIONS degrees */
+  double x = 1, y = 0;
+  for (int d = 0; d < RC_END_DIRECTIONS; d++) {
+    direction[d][0] = (float)x, direction[d][1] = (float)y;
+    double next = x * c - y * s;
+    y = x * s + y * c, x = next;
+  }
+}
+
+int rc_border_length(const rc_mask *flags) { return collect_border(flags, NULL); }
+
+recede_status rc_ends_find(rc_context *context, const rc_seen *seen, rc_ends *ends) {
+  int32_t *border;
+  *ends = (rc_ends){.picture = *seen, .border_count = collect_border(seen->flags, NULL)};
+  RC_TRY(RC_NEW(context, ends->border_count, &border));
+  RC_TRY(RC_NEW(context, ends->border_count, &ends->best));
+  RC_TRY(RC_NEW_ZERO(context, ends->border_count, &ends->best_direction));
+  collect_border(seen->flags, border);
+  set_directions(ends->direction);
+  ends->border = border;
+  return rc_parallel(context, ends->border_count, search_border, ends);
+}

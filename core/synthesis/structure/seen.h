@@ -1,0 +1,20 @@
+/* One level of the picture, as lines are looked for in it. */
+#ifndef RECEDE_SYNTHESIS_STRUCTURE_SEEN_H
+#define RECEDE_SYNTHESIS_STRUCTURE_SEEN_H
+
+#include "image/image.h"
+
+typedef struct rc_seen {
+  const rc_mask *flags;
+  const float *value;
+} rc_seen;
+
+/* Of an rc_seen; false: (x, y) is no source. */
+bool rc_seen_source(const void *seen, int x, int y, float *value);
+/* The level's pixels by these weights of their channels. */
+recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *flags,
+                     const float axis[3], rc_seen *seen);
+/* The same picture by its contrast: the deviation within 3 x 3 px. */
+recede_status rc_see_contrast(rc_context *context, rc_seen *seen);
+
+#endif
