@@ -25,6 +25,7 @@
 #include "synthesis/sources/spots.h"
 #include "synthesis/sources/strangers.h"
 #include "synthesis/structure/boundary.h"
+#include "synthesis/structure/branches.h"
 #include "synthesis/structure/dash_rows.h"
 #include "synthesis/structure/gauge.h"
 #include "synthesis/structure/regions.h"
@@ -142,13 +143,13 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
   if (e->params->engine_boundary && !e->due)
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
                             &e->line_count, &e->rails, &e->sides));
+  if (!rc_runs(&e->rails) && !e->due && e->params->engine_branches)
+    RC_TRY(rc_branches_add(context, &e->images[from], &e->flags[from], from, &e->chart, e->lines,
+                           &e->line_count));
   if (!e->sides.boundary_count) rc_dash_rows_drop_lines(dashes, e->lines, &e->line_count);
   if (!e->params->engine_rails) e->rails = (rc_rails){0};
   if (rc_runs(&e->rails) && e->params->surface != RECEDE_SURFACE_RAISED && e->params->engine_gauge)
     RC_TRY(rc_gauge_find(context, e->images, e->flags, e->level_count, &e->chart, &e->rails));
-  if (e->line_count && !rc_runs(&e->rails) && e->params->engine_branches)
-    RC_TRY(rc_branches_find(context, &e->images[from], &e->flags[from], from, &e->chart, e->lines,
-                            e->line_count, e->branches, &e->branch_count));
   if (e->rails.rows) e->chart.raised = false; /* boards of one width lie */
   return RECEDE_OK;
 }

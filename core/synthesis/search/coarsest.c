@@ -231,8 +231,7 @@ static recede_status try_lines(rc_context *context, rc_descent *e, const starts 
   rc_trial best;
   double own;
   RC_TRY(rc_trial_new(context, level, &best));
-  RC_TRY(rc_lines_lock(context, e->lines, e->line_count, e->branches, e->branch_count,
-                       e->level_count - 1, level));
+  RC_TRY(rc_lines_lock(context, e->lines, e->line_count, e->level_count - 1, level));
   RC_TRY(try_starts(context, e, s, p, level, scratch, &best, &own));
   own += price_of_broken_lines(e, level, &best);
   e->continue_lines = own < favour_of(&e->lines[0]) * misfit;

@@ -71,8 +71,7 @@ static recede_status run_level(rc_context *context, rc_descent *e, int exponent,
   bool coarsest = exponent == e->level_count - 1;
   rc_block *mark = rc_mark(context);
   if (e->continue_lines && !coarsest)
-    RC_TRY(rc_lines_lock(context, e->lines, e->line_count, e->branches, e->branch_count, exponent,
-                         level));
+    RC_TRY(rc_lines_lock(context, e->lines, e->line_count, exponent, level));
   if (exponent >= last_searched(e)) RC_TRY(search_level(context, e, exponent, level));
   if (!exponent && e->take_beside && !e->on_rails && !e->on_lattice && !e->by_periods)
     RC_TRY(rc_take_beside(context, level, rc_key((uint64_t)e->params->seed, 96, 0), false));

@@ -5,7 +5,6 @@
 #include "synthesis/search/level.h"
 #include "synthesis/search/periods.h"
 #include "synthesis/search/traits.h"
-#include "synthesis/structure/branches.h"
 #include "synthesis/structure/lattice.h"
 #include "synthesis/structure/lines.h"
 #include "synthesis/structure/rails.h"
@@ -26,10 +25,8 @@ typedef struct rc_descent {
   rc_periods periods;               /* of the coarsest level */
   rc_lattice lattice;               /* px of the coarsest level */
   rc_bends bends;                   /* the lattice's */
-  rc_crossing lines[RC_MOST_LINES]; /* px of the finest level */
+  rc_crossing lines[RC_ALL_LINES]; /* px of the finest level */
   int line_count;
-  rc_crossing branches[RC_MOST_BRANCHES]; /* which end at these; px of the finest level */
-  int branch_count;
   rc_rails rails;
   bool keep_rails; /* an earlier fill of the same plane did: other starts need not be tried */
   rc_conditions conditions; /* of the finest level */

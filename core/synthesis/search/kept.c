@@ -46,8 +46,10 @@ static double line_kept(const rc_level *level, const rc_crossing *line, int expo
   for (int k = 0; k < RC_COMPONENTS; k++)
     for (int i = 0; i < 3; i++) v.axis[k] += line->axis[i] * level->colours[k][i];
   rc_ruler ruler = {outside, &v, dx / length, dy / length, &level->chart};
-  if (!rc_profile_mean(&ruler, ax, ay, -RC_PROFILE_FROM_PX, -1, near, &own[0]) ||
-      !rc_profile_mean(&ruler, ax + dx, ay + dy, RC_PROFILE_FROM_PX, 1, near, &own[1]))
+  if (!rc_profile_mean(&ruler, ax + dx, ay + dy, RC_PROFILE_FROM_PX, 1, near, &own[1])) return 1;
+  if (line->ends_inside)
+    own[0] = own[1];
+  else if (!rc_profile_mean(&ruler, ax, ay, -RC_PROFILE_FROM_PX, -1, near, &own[0]))
     return 1;
   ruler.value = everywhere;
   for (int piece = 0; piece < LOOKED_AT; piece++) {

@@ -66,14 +66,12 @@ static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
     }
 }
 
-recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int line_count,
-                            const rc_crossing *branches, int branch_count, int exponent,
+recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int count, int exponent,
                             rc_level *level) {
   size_t box = (size_t)level->box_w * (size_t)level->box_h;
   RC_TRY(RC_NEW_ZERO(context, box, &level->locked));
-  /* The strongest last: it stays whole. */
-  for (int i = branch_count - 1; i >= 0; i--) lock_line(&branches[i], exponent, level);
-  for (int i = line_count - 1; i >= 0; i--) lock_line(&lines[i], exponent, level);
+  /* The first of all last: it stays whole. */
+  for (int i = count - 1; i >= 0; i--) lock_line(&lines[i], exponent, level);
   return RECEDE_OK;
 }
 

@@ -6,10 +6,9 @@
 #include "synthesis/structure/dash_rows.h"
 #include "synthesis/structure/lines.h"
 
-/* Sets the field along the lines and their branches and marks it in level->locked, which is made for
- * it: start and search leave it alone. */
-recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int line_count,
-                            const rc_crossing *branches, int branch_count, int exponent,
+/* Sets the field along the lines and marks it in level->locked, which is made for it: start and
+ * search leave it alone. */
+recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int count, int exponent,
                             rc_level *level);
 /* Sets the finest level's field, and laid, where rows cross the hole, when all else is done: what
  * is copied around them has no dashes. */

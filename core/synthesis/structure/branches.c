@@ -10,15 +10,31 @@
 
 /* Shorter ones a patch carries on. */
 #define SHORTEST_PX 8.f
-/* It must lie so much in the hole, and meet the line at such an angle: sine. */
-#define LEAST_INSIDE .7f
+/* Two meet at such an angle: sine. */
 #define LEAST_SINE .4f
-/* Its direction is looked for so much to each side of the best of all, in so many steps. */
+/* A direction is looked for so much to each side of the best of all, in so many steps. */
 #define TURN_STEP .008f
 #define TURNS 4
 /* And across, px. */
 #define ACROSS_STEP_PX .5f
 #define ACROSS 4
+/* So many ends, the strongest, are looked at. */
+#define MOST_ENDS 16
+
+/* A line at the border that nothing continues yet. */
+typedef struct loose {
+  float x, y, out[2], strength, as_strong;
+} loose;
+
+typedef struct work {
+  const rc_seen *seen;
+  const rc_chart *chart; /* of the level */
+  int reach_px;          /* of what is looked at beside a line */
+  rc_crossing *lines;    /* px of the level */
+  int line_count;
+  loose ends[MOST_ENDS];
+  int end_count;
+} work;
 
 static void turn_by(float by, const float from[2], float to[2]) {
   float x = from[0] - by * from[1], y = from[1] + by * from[0], length = sqrtf(x * x + y * y);
@@ -26,113 +42,184 @@ static void turn_by(float by, const float from[2], float to[2]) {
 }
 
 /* The place and direction near those of a border pixel where the line is clearest. */
-static void refine(const rc_ends *ends, int item, float at[2], float out[2], rc_run *run) {
+static loose refine(const rc_ends *ends, int item) {
   int width = ends->picture.flags->width;
-  float x = (float)(ends->border[item] % width), y = (float)(ends->border[item] / width);
+  float x = (float)(ends->border[item] % width), y = (float)(ends->border[item] / width), most = 0;
   const float *best = ends->direction[ends->best_direction[item]];
-  *run = (rc_run){.strength = 0};
+  loose found = {.strength = 0};
   for (int turn = -TURNS; turn <= TURNS; turn++)
     for (int step = -ACROSS; step <= ACROSS; step++) {
       float u[2], across = ACROSS_STEP_PX * (float)step;
       turn_by(TURN_STEP * (float)turn, best, u);
       float px = x - across * u[1], py = y + across * u[0];
-      rc_run here = rc_run_measure(&ends->picture, px, py, u[0], u[1], 1);
-      if (here.strength < RC_LEAST_STRENGTH || here.clarity <= run->clarity) continue;
-      *run = here;
-      memcpy(out, u, sizeof u), at[0] = px, at[1] = py;
+      rc_run run = rc_run_measure(&ends->picture, px, py, u[0], u[1], 1);
+      if (run.strength < RC_SURE_STRENGTH || run.clarity <= most) continue;
+      most = run.clarity;
+      found = (loose){px, py, {u[0], u[1]}, run.strength, 0};
     }
+  return found;
 }
 
-/* How far inwards it meets a line between its ends; infinite: nowhere, or at a flat angle. */
-static float way_to(const rc_crossing *line, const float at[2], const float out[2]) {
-  float dx = line->bx - line->ax, dy = line->by - line->ay, length = sqrtf(dx * dx + dy * dy);
-  float sine = (dx * out[1] - dy * out[0]) / length;
-  if (fabsf(sine) < LEAST_SINE) return INFINITY;
-  float ox = at[0] - line->ax, oy = at[1] - line->ay;
-  float way = (dx * oy - dy * ox) / (length * sine);
-  float along = ((ox - way * out[0]) * dx + (oy - way * out[1]) * dy) / (length * length);
-  return way > 0 && along > 0 && along < 1 ? way : INFINITY;
+static bool is_at_end_of(const rc_crossing *line, float x, float y) {
+  float to_a = line->ends_inside ? INFINITY : fmaxf(fabsf(line->ax - x), fabsf(line->ay - y));
+  return fminf(to_a, fmaxf(fabsf(line->bx - x), fabsf(line->by - y))) <= RC_PROFILE;
 }
 
-static bool lies_in_the_hole(const rc_mask *flags, const rc_crossing *c) {
-  int inside = 0, samples = 32;
-  for (int i = 1; i < samples; i++) {
-    float t = (float)i / (float)samples;
-    int x = (int)floorf(c->ax + t * (c->bx - c->ax) + .5f);
-    int y = (int)floorf(c->ay + t * (c->by - c->ay) + .5f);
-    inside += (*rc_flag(flags, x, y) & RC_TARGET) != 0;
-  }
-  return (float)inside > LEAST_INSIDE * (float)samples;
+static bool is_continued(const work *w, const loose *end) {
+  for (int i = 0; i < w->line_count; i++)
+    if (is_at_end_of(&w->lines[i], end->x, end->y) ||
+        (!w->lines[i].ends_inside &&
+         rc_crossing_distance(&w->lines[i], end->x, end->y) <= RC_PROFILE))
+      return true;
+  return false;
 }
 
-/* One of a line's own ends, or the other edge of one that is wide. */
-static bool is_of(const rc_crossing *line, const rc_crossing *c) {
-  return rc_crossing_distance(line, c->bx, c->by) <= RC_PROFILE ||
-         (line->ends_inside && fabsf(line->bx - c->bx) <= RC_PROFILE &&
-          fabsf(line->by - c->by) <= RC_PROFILE);
-}
-
-static bool meets_one(const rc_ends *ends, int item, const rc_crossing *lines, int line_count,
-                      rc_crossing *branch) {
-  float at[2], out[2], way = INFINITY;
-  rc_run run;
-  refine(ends, item, at, out, &run);
-  if (!(run.clarity > 0)) return false;
-  for (int i = 0; i < line_count; i++) way = fminf(way, way_to(&lines[i], at, out));
-  *branch = (rc_crossing){.bx = at[0], .by = at[1], .strength = run.strength, .ends_inside = true};
-  if (!(way >= SHORTEST_PX) || way == INFINITY) return false;
-  branch->ax = at[0] - way * out[0], branch->ay = at[1] - way * out[1];
-  for (int i = 0; i < line_count; i++)
-    if (is_of(&lines[i], branch)) return false;
-  branch->as_strong = rc_ends_as_strong(ends, branch);
-  return branch->as_strong <= RC_MOST_AS_STRONG && lies_in_the_hole(ends->picture.flags, branch);
-}
-
-/* Strongest first; of those beside one another the stronger stays. */
-static void keep(rc_crossing branches[RC_MOST_BRANCHES], int *count, rc_crossing c) {
+/* Strongest first; of those beside one another, as of a line's two edges, the stronger stays. */
+static void keep(work *w, loose end) {
   int at = 0;
-  for (int i = 0; i < *count; i++) {
-    if (!is_of(&branches[i], &c)) continue;
-    if (branches[i].strength >= c.strength) return;
-    memmove(&branches[i], &branches[i + 1], (size_t)(*count - i - 1) * sizeof c);
-    (*count)--, i--;
+  for (int i = 0; i < w->end_count; i++) {
+    loose *old = &w->ends[i];
+    if (fmaxf(fabsf(old->x - end.x), fabsf(old->y - end.y)) > RC_PROFILE) continue;
+    if (old->strength >= end.strength) return;
+    memmove(old, old + 1, (size_t)(w->end_count - i - 1) * sizeof end);
+    w->end_count--, i--;
   }
-  while (at < *count && branches[at].strength >= c.strength) at++;
-  if (at == RC_MOST_BRANCHES) return;
-  int moved = (*count < RC_MOST_BRANCHES ? *count : RC_MOST_BRANCHES - 1) - at;
-  memmove(&branches[at + 1], &branches[at], (size_t)moved * sizeof c);
-  branches[at] = c;
-  if (*count < RC_MOST_BRANCHES) (*count)++;
+  while (at < w->end_count && w->ends[at].strength >= end.strength) at++;
+  if (at == MOST_ENDS) return;
+  int moved = (w->end_count < MOST_ENDS ? w->end_count : MOST_ENDS - 1) - at;
+  memmove(&w->ends[at + 1], &w->ends[at], (size_t)moved * sizeof end);
+  w->ends[at] = end;
+  if (w->end_count < MOST_ENDS) w->end_count++;
 }
 
-recede_status rc_branches_find(rc_context *context, const rc_image *image, const rc_mask *mask,
-                               int exponent, const rc_chart *chart, const rc_crossing *lines,
-                               int line_count, rc_crossing branches[RC_MOST_BRANCHES],
-                               int *count) {
+static void collect(const rc_ends *ends, work *w) {
+  for (int i = 0; i < ends->border_count; i++) {
+    if (!rc_end_stands_out(ends, i, RC_SURE_STRENGTH)) continue;
+    loose end = refine(ends, i);
+    rc_crossing line = {end.x, end.y, end.x + end.out[0], end.y + end.out[1],
+                        .strength = end.strength};
+    if (!(end.strength > 0) || is_continued(w, &end)) continue;
+    end.as_strong = rc_ends_as_strong(ends, &line);
+    if (end.as_strong <= RC_MOST_AS_STRONG) keep(w, end);
+  }
+}
+
+/* How far inwards an end meets the line through (x, y) along u; infinite: not, or at a flat angle.
+ * at: where on that line. */
+static float way_to(const loose *end, float x, float y, const float u[2], float *at) {
+  float sine = u[0] * end->out[1] - u[1] * end->out[0];
+  if (fabsf(sine) < LEAST_SINE) return INFINITY;
+  float ox = end->x - x, oy = end->y - y, way = (u[0] * oy - u[1] * ox) / sine;
+  *at = (ox - way * end->out[0]) * u[0] + (oy - way * end->out[1]) * u[1];
+  return way > 0 ? way : INFINITY;
+}
+
+/* To the first line that it meets between its ends. */
+static float way_to_lines(const work *w, const loose *end) {
+  float first = INFINITY, at = 0;
+  for (int i = 0; i < w->line_count; i++) {
+    const rc_crossing *c = &w->lines[i];
+    float length = rc_crossing_length(c);
+    float u[2] = {(c->bx - c->ax) / length, (c->by - c->ay) / length};
+    float way = way_to(end, c->ax, c->ay, u, &at);
+    if (way < first && at >= 0 && at <= length) first = way;
+  }
+  return first;
+}
+
+/* Takes a line in that ends inside, so far from its end, if it can be followed and is no chance. */
+static bool try_branch(const work *w, const loose *end, float way, rc_crossing *branch) {
+  *branch = (rc_crossing){.ax = end->x - way * end->out[0],
+                          .ay = end->y - way * end->out[1],
+                          .bx = end->x,
+                          .by = end->y,
+                          .strength = end->strength,
+                          .as_strong = end->as_strong,
+                          .ends_inside = true};
+  return way >= SHORTEST_PX && rc_lies_in_the_hole(w->seen->flags, branch) &&
+         rc_follow_branch(w->seen, w->chart, rc_windows_of(branch, false), branch) &&
+         rc_crossing_is_sure(branch) &&
+         rc_end_stands_alone(w->seen, w->chart, branch, w->reach_px);
+}
+
+static void drop_end(work *w, int i) {
+  memmove(&w->ends[i], &w->ends[i + 1], (size_t)(w->end_count - i - 1) * sizeof *w->ends);
+  w->end_count--;
+}
+
+/* The loose end that has the shortest way to a line goes on to it. False: none has. */
+static bool end_at_line(work *w) {
+  float least = INFINITY;
+  int which = -1;
+  for (int i = 0; i < w->end_count; i++) {
+    float way = way_to_lines(w, &w->ends[i]);
+    if (way < least) least = way, which = i;
+  }
+  if (which < 0) return false;
+  loose end = w->ends[which];
+  drop_end(w, which);
+  if (try_branch(w, &end, least, &w->lines[w->line_count])) w->line_count++;
+  return true;
+}
+
+/* Of two that meet each other those go on that have the shortest way together. */
+static bool end_at_each_other(work *w) {
+  float least = INFINITY, ways[2] = {0, 0}, at = 0;
+  int p = -1, q = -1;
+  for (int i = 0; i < w->end_count; i++)
+    for (int j = 0; j < i; j++) {
+      const loose *a = &w->ends[i], *b = &w->ends[j];
+      float way = way_to(a, b->x, b->y, b->out, &at);
+      if (!(way + fabsf(at) < least) || at >= 0) continue;
+      least = way - at, p = i, q = j, ways[0] = way, ways[1] = -at;
+    }
+  if (p < 0) return false;
+  loose a = w->ends[p], b = w->ends[q];
+  rc_crossing *made = &w->lines[w->line_count];
+  drop_end(w, p); /* the later one */
+  if (!try_branch(w, &a, ways[0], &made[0])) return true;
+  drop_end(w, q);
+  if (try_branch(w, &b, ways[1], &made[1])) w->line_count += 2;
+  return true;
+}
+
+/* Those that cross the hole in other directions. */
+static void add_crossing(const rc_crossing *all, int count, work *w) {
+  for (int i = 0; i < count && w->line_count < RC_MOST_LINES; i++) {
+    rc_crossing c = all[i];
+    loose a = {c.ax, c.ay, {0, 0}, 0, 0}, b = {c.bx, c.by, {0, 0}, 0, 0};
+    if (is_continued(w, &a) || is_continued(w, &b) || c.as_strong > RC_MOST_AS_STRONG ||
+        !rc_stands_alone(w->seen, w->chart, &c, w->reach_px, NULL) ||
+        !rc_follow(w->seen, w->chart, rc_windows_of(&c, false), &c) || !rc_crossing_is_sure(&c))
+      continue;
+    w->lines[w->line_count++] = c;
+  }
+}
+
+recede_status rc_branches_add(rc_context *context, const rc_image *image, const rc_mask *mask,
+                              int exponent, const rc_chart *chart, rc_crossing lines[RC_ALL_LINES],
+                              int *count) {
   rc_chart here = rc_chart_coarser(*chart, exponent);
-  rc_crossing there[RC_MOST_LINES];
+  rc_crossing all[RC_MOST_LINES];
   rc_seen seen;
   rc_ends ends;
-  int kept = 0, reach_px = rc_longer_side(rc_box_of(mask, RC_TARGET));
+  int all_count = 0, before = *count;
+  const float *axis = rc_brightness_axis(image);
   rc_block *mark = rc_mark(context);
-  *count = 0;
-  RC_TRY(rc_see(context, image, mask, lines->axis, &seen));
+  RC_TRY(rc_see(context, image, mask, axis, &seen));
   RC_TRY(rc_ends_find(context, &seen, &ends));
-  for (int i = 0; i < line_count; i++) there[i] = rc_crossing_coarser(lines[i], exponent);
-  for (int i = 0; i < ends.border_count; i++) {
-    rc_crossing branch;
-    if (rc_end_stands_out(&ends, i, RC_LEAST_STRENGTH) &&
-        meets_one(&ends, i, there, line_count, &branch))
-      keep(branches, count, branch);
-  }
+  work w = {.seen = &seen, .chart = &here, .lines = lines, .line_count = *count};
+  w.reach_px = rc_longer_side(rc_box_of(mask, RC_TARGET));
+  for (int i = 0; i < *count; i++) lines[i] = rc_crossing_coarser(lines[i], exponent);
+  rc_lines_pair_up(&ends, RC_SURE_STRENGTH, all, &all_count);
+  add_crossing(all, all_count, &w);
+  collect(&ends, &w);
+  while (w.line_count + 2 <= RC_ALL_LINES && (end_at_line(&w) || end_at_each_other(&w)));
+  *count = w.line_count;
   for (int i = 0; i < *count; i++) {
-    rc_crossing c = branches[i];
-    if (!rc_follow_branch(&seen, &here, rc_windows_of(&c, false), &c) ||
-        !rc_crossing_is_sure(&c) || !rc_end_stands_alone(&seen, &here, &c, reach_px))
-      continue;
-    branches[kept++] = rc_crossing_coarser(c, -exponent);
+    lines[i] = rc_crossing_coarser(lines[i], -exponent);
+    if (i >= before) memcpy(lines[i].axis, axis, sizeof lines[i].axis);
   }
-  *count = kept;
   rc_release(context, mark);
   return rc_poll(context);
 }

@@ -1,17 +1,16 @@
-/* Joints that end at another one: slabs, setts beside a kerb. Seen from outside such a line enters
- * the hole and does not leave it, for in it another line, which is known, crosses its way. */
+/* Lines that the parallel ones leave out: those that cross them, joints that end at another one, and
+ * two that meet in the hole, as slabs' do. Only what is no chance, and no joint of many: those keep
+ * in order by themselves, and moved in alone break the ones that cross them. */
 #ifndef RECEDE_SYNTHESIS_STRUCTURE_BRANCHES_H
 #define RECEDE_SYNTHESIS_STRUCTURE_BRANCHES_H
 
 #include "synthesis/structure/lines.h"
 
-#define RC_MOST_BRANCHES 16
-
-/* All that end at one of the lines, strongest first: each from there, its a, to the hole's border,
- * its b. lines and branches: px of the finest level, of which chart is; image and mask: the level
- * rc_lines_level says, 2^exponent times coarser. */
-recede_status rc_branches_find(rc_context *context, const rc_image *image, const rc_mask *mask,
-                               int exponent, const rc_chart *chart, const rc_crossing *lines,
-                               int line_count, rc_crossing branches[RC_MOST_BRANCHES], int *count);
+/* Adds them to the lines, px of the finest level, of which chart is. Of one that ends in the hole a
+ * is there, and b at the border. image and mask: the level rc_lines_level says, 2^exponent times
+ * coarser. */
+recede_status rc_branches_add(rc_context *context, const rc_image *image, const rc_mask *mask,
+                              int exponent, const rc_chart *chart, rc_crossing lines[RC_ALL_LINES],
+                              int *count);
 
 #endif

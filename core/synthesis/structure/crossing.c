@@ -8,9 +8,7 @@
 /* Signal to noise of one that the others may be parallel to. */
 #define LEAST_LEADING_STRENGTH 12.f
 #define PARALLEL .9976f /* cosine of 4 degrees, in the plane */
-/* Stones' edges are as strong, but chance ones keep less. */
-#define SURE_STRENGTH 30.f
-#define SURE_KEPT .9f
+#define SURE_KEPT .9f /* at such a strength */
 /* Beside setts even a kerb is no stronger than they are. It is no chance if, of the hole's border,
  * so much is as strong, this part of its contrast is kept, and no patch holds it across: kerbs
  * reach 10 px, cracks in a road, whose texture moves in with nothing, 4. Seen coarser, where setts
@@ -41,7 +39,7 @@ bool rc_crossing_is_right(const rc_crossing *line, float x, float y) {
 }
 
 bool rc_crossing_is_sure(const rc_crossing *line) {
-  return line->band || (line->strength >= SURE_STRENGTH && line->kept >= SURE_KEPT);
+  return line->band || (line->strength >= RC_SURE_STRENGTH && line->kept >= SURE_KEPT);
 }
 
 void rc_crossing_tell_band(rc_crossing *line, bool seen_coarser) {

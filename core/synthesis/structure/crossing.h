@@ -6,10 +6,13 @@
 #include "image/image.h"
 #include "synthesis/copy.h"
 
-#define RC_MOST_LINES 8
+#define RC_MOST_LINES 8 /* parallel ones */
+#define RC_ALL_LINES 24
 #define RC_MOST_PIECES 24
 
-/* Signal to noise of what is no chance: markings and kerbs have 100 and more. */
+/* Signal to noise: stones' edges are as strong as this, but chance ones keep less. */
+#define RC_SURE_STRENGTH 30.f
+/* And of what is no chance: markings and kerbs have 100 and more. */
 #define RC_CLEAR_STRENGTH 100.f
 
 /* A line from the hole's border at a to that at b, px of the finest level, or one that ends at a

@@ -5,7 +5,6 @@
 
 #include "base/memory.h"
 #include "synthesis/structure/alone.h"
-#include "synthesis/structure/ends.h"
 #include "synthesis/structure/follow.h"
 
 /* Lines are looked for at the finest level whose hole has at most so many border pixels. */
@@ -40,7 +39,7 @@ static float rise_of(const rc_run *p) {
   return dot / sqrtf(square * (RC_PROFILE - 1));
 }
 
-static bool crosses_the_hole(const rc_mask *flags, const rc_crossing *c) {
+bool rc_lies_in_the_hole(const rc_mask *flags, const rc_crossing *c) {
   int inside = 0, samples = 32;
   for (int i = 1; i < samples; i++) {
     float t = (float)i / (float)samples;
@@ -115,7 +114,7 @@ static void keep(rc_crossing lines[RC_MOST_LINES], int *count, rc_crossing c) {
   if (*count < RC_MOST_LINES) (*count)++;
 }
 
-static void pair_up(const rc_ends *ends, float least_strength, rc_crossing lines[RC_MOST_LINES], int *count) {
+void rc_lines_pair_up(const rc_ends *ends, float least_strength, rc_crossing lines[RC_MOST_LINES], int *count) {
   int width = ends->picture.flags->width;
   for (int i = 0; i < ends->border_count; i++) {
     if (!rc_end_stands_out(ends, i, least_strength)) continue;
@@ -128,7 +127,7 @@ static void pair_up(const rc_ends *ends, float least_strength, rc_crossing lines
                        .by = (float)(ends->border[j] / width)};
       float dx = c.ax - c.bx, dy = c.ay - c.by, length = sqrtf(dx * dx + dy * dy);
       if (length < SHORTEST_PX || dx * u[0] + dy * u[1] < STRAIGHT * length ||
-          dx * v[0] + dy * v[1] > -STRAIGHT * length || !crosses_the_hole(ends->picture.flags, &c) ||
+          dx * v[0] + dy * v[1] > -STRAIGHT * length || !rc_lies_in_the_hole(ends->picture.flags, &c) ||
           !rc_end_stands_out(ends, j, least_strength))
         continue;
       refine(ends, least_strength, &c);
@@ -158,6 +157,11 @@ static void follow(const rc_seen *seen, const rc_chart *chart, int exponent,
   *count = kept;
 }
 
+const float *rc_brightness_axis(const rc_image *image) {
+  static const float grey[3] = {1, 0, 0}, colours[3] = {.3f, .59f, .11f};
+  return image->channels == 1 ? grey : colours;
+}
+
 int rc_lines_level(const rc_mask *masks, int levels) {
   for (int exponent = 0; exponent < levels; exponent++) {
     int border_count = rc_border_length(&masks[exponent]);
@@ -172,8 +176,8 @@ recede_status rc_lines_at(rc_context *context, const rc_seen *seen, bool faint,
   rc_block *mark = rc_mark(context);
   *count = 0;
   RC_TRY(rc_ends_find(context, seen, &ends));
-  pair_up(&ends, RC_LEAST_STRENGTH, lines, count);
-  if (faint && !*count) pair_up(&ends, RC_LEAST_FAINT_STRENGTH, lines, count);
+  rc_lines_pair_up(&ends, RC_LEAST_STRENGTH, lines, count);
+  if (faint && !*count) rc_lines_pair_up(&ends, RC_LEAST_FAINT_STRENGTH, lines, count);
   rc_release(context, mark);
   return RECEDE_OK;
 }
@@ -182,8 +186,7 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
                             int exponent, bool corners, const rc_chart *chart,
                             const rc_copy periods[2], rc_crossing lines[RC_MOST_LINES],
                             int *count) {
-  static const float grey[3] = {1, 0, 0}, colours[3] = {.3f, .59f, .11f};
-  const float *axis = image->channels == 1 ? grey : colours;
+  const float *axis = rc_brightness_axis(image);
   rc_seen seen;
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_see(context, image, mask, axis, &seen));

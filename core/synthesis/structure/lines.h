@@ -5,7 +5,7 @@
 #define RECEDE_SYNTHESIS_STRUCTURE_LINES_H
 
 #include "synthesis/structure/crossing.h"
-#include "synthesis/structure/seen.h"
+#include "synthesis/structure/ends.h"
 
 /* Signal to noise of a line on both sides of the hole. Edges of stones reach 7. Where nothing does
  * fainter ones may be asked for: even a kerb among setts has no more. */
@@ -14,10 +14,17 @@
 
 /* The finest level that lines are looked for in; -1: there is none, or no border. */
 int rc_lines_level(const rc_mask *masks, int levels);
+/* Whether a line is in the hole for nearly all of its way. flags: of the same level. */
+bool rc_lies_in_the_hole(const rc_mask *flags, const rc_crossing *line);
+/* The weights of colours that lines are looked for by. */
+const float *rc_brightness_axis(const rc_image *image);
 /* All that look the same on both sides of the hole, strongest first, px of that level. faint: if
  * there are none, fainter ones. */
 recede_status rc_lines_at(rc_context *context, const rc_seen *seen, bool faint,
                           rc_crossing lines[RC_MOST_LINES], int *count);
+/* The same of ends that are known. */
+void rc_lines_pair_up(const rc_ends *ends, float least_strength, rc_crossing lines[RC_MOST_LINES],
+                      int *count);
 /* Parallel lines of the plane that cross the hole and can be continued, strongest first. image and
  * mask: the level rc_lines_level says, 2^exponent times coarser than the finest, of which chart is.
  * corners: only those that cut a corner off the hole. One that leaves it at a flat angle has the
