@@ -179,7 +179,7 @@ typedef struct recede_params {
   double paper_histogram_gain; /* eq. 9's sum times this; -1: by paper_literal */
   double paper_exponent;       /* r of eq. 5 */
   int paper_iterations;        /* of one sweep, at most; 0: by method */
-  int engine_near, engine_tone, engine_alike, engine_periods, engine_lattice, engine_regular,
+  int engine_near, engine_tone, engine_alike, engine_periods, engine_lattice, engine_regular, engine_joints,
       engine_lines, engine_branches, engine_rails, engine_gauge, engine_spots, engine_kin, engine_focus,
       engine_light, engine_boundary, engine_regions, engine_tracks, engine_dashes, engine_texture,
       engine_whole, engine_cuts, engine_coherence, engine_beside, engine_steps, engine_usage,

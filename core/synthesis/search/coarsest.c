@@ -296,7 +296,8 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   double misfit;
   rc_trial best;
   if (e->params->engine_periods)
-    RC_TRY(rc_find_periods(context, level, key, RC_PERIOD_POINTS, &e->periods));
+    RC_TRY(rc_find_periods(context, level, key, RC_PERIOD_POINTS, e->params->engine_joints,
+                           &e->periods));
   /* What stands alone comes again in no lattice. */
   bool lone = e->line_count && rc_crossing_is_lone(&e->lines[0]);
   if (e->params->engine_lattice && !lone)

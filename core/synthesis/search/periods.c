@@ -24,17 +24,29 @@
 #define REPEATS_BY_RISE .85f
 /* And it is regular where two periods so far from parallel, sine of the angle, correlate and rise
  * by so much each: drawn chess boards, hexagons, pavers, parquet and facades .6 to .98, and .75 to
- * 1.1. Dunes have .9 and 1, but one way. */
-#define REGULAR .6f
-#define REGULAR_RISE .75f
+ * 1.1. Dunes have .9 and 1, but one way. And a third one, of their sum or difference, correlates by
+ * the last. */
+typedef struct bar {
+  float value, rise, confirmed;
+} bar;
+static const bar by_all = {.6f, .75f, .4f};
+/* Tiles that are stained, or of many colours, have nothing in common but their joints, thin lines
+ * that are darker or brighter than what lies within so many px. Of a lattice every place that its
+ * periods lead to correlates by so much, and those half a period off by no more than this part of
+ * what these do in the mean: hexagons, octagons, window panes, figured tiles .21 to .52, and up to
+ * .54; walls in courses, setts and boards less than .17, or .72 to .98. */
+#define JOINTS_WITHIN_PX 3
+#define MOST_DEVIATIONS 2.f /* a joint is a joint, however dark */
+static const bar by_joints = {.25f, .25f, .2f};
+#define LEAST_ON .2f
+#define MOST_OFF .65
+#define REACHED 9 /* so many periods each way */
 #define LEAST_SINE .5f
 /* Of what is smaller patches see nearly two. */
 #define LEAST_DUE_PX 7.f
 #define BESIDE_PX 4
 /* What is due is off by .1 to 1 of the variance, bare ground among heaps by 2. */
 #define MOST_DUE_OFF 1.2
-/* And a third one, of their sum or difference, correlates by this. */
-#define CONFIRMED .4f
 /* A peak is a multiple of both that is off by no more. */
 #define MOST_OFF_PX 1.5
 
@@ -50,6 +62,7 @@ typedef struct correlation {
 
 typedef struct peak {
   float value, rise, x, y;
+  bool inside; /* of the lags looked at */
 } peak;
 
 typedef struct sums {
@@ -131,21 +144,24 @@ static int stronger_first(const void *a, const void *b) {
   return p->y != q->y ? (p->y > q->y) - (p->y < q->y) : (p->x > q->x) - (p->x < q->x);
 }
 
-static bool is_regular(const peak *p) { return p->value >= REGULAR && p->rise >= REGULAR_RISE; }
+static bool is_regular(const bar *b, const peak *p) {
+  return p->value >= b->value && p->rise >= b->rise;
+}
 
 /* Of stripes there are peaks all along the next one, and none between them. */
-static bool part_them(const correlation *c, const peak *p, const peak *q) {
+static bool part_them(const correlation *c, const bar *b, const peak *p, const peak *q) {
   int px = (int)rc_round(p->x), py = (int)rc_round(p->y);
   int qx = (int)rc_round(q->x), qy = (int)rc_round(q->y);
-  return rise_to(c, px, py, qx, qy) >= REGULAR_RISE && rise_to(c, -px, -py, qx, qy) >= REGULAR_RISE;
+  return rise_to(c, px, py, qx, qy) >= b->rise && rise_to(c, -px, -py, qx, qy) >= b->rise;
 }
 
 /* Two peaks come by chance, but what they span has more: at their sum or difference. */
-static bool is_confirmed(const peak *peaks, int count, const peak *p, const peak *q) {
+static bool is_confirmed(const bar *b, const peak *peaks, int count, const peak *p,
+                         const peak *q) {
   for (int n = 0; n < 4 * count; n++) {
     const peak *at = &peaks[n / 4];
     float by = n % 2 ? 1.f : -1.f, sign = n / 2 % 2 ? 1.f : -1.f;
-    if (at->value >= CONFIRMED && at->rise > 0 &&
+    if (at->value >= b->confirmed && at->rise > 0 &&
         fabsf(sign * at->x - p->x - by * q->x) <= MOST_OFF_PX &&
         fabsf(sign * at->y - p->y - by * q->y) <= MOST_OFF_PX)
       return true;
@@ -154,16 +170,17 @@ static bool is_confirmed(const peak *peaks, int count, const peak *p, const peak
 }
 
 /* The two that together are shortest. */
-static void find_base(const correlation *c, const peak *peaks, int count, rc_periods *periods) {
+static void find_base(const correlation *c, const bar *b, const peak *peaks, int count,
+                      rc_periods *periods) {
   float shortest = INFINITY;
   for (int i = 0; i < count; i++)
     for (int j = 0; j < i; j++) {
       const peak *p = &peaks[i], *q = &peaks[j];
-      if (!is_regular(p) || !is_regular(q)) continue;
+      if (!is_regular(b, p) || !is_regular(b, q)) continue;
       float p_px = sqrtf(p->x * p->x + p->y * p->y), q_px = sqrtf(q->x * q->x + q->y * q->y);
       if (fabsf(p->x * q->y - p->y * q->x) < LEAST_SINE * p_px * q_px || p_px + q_px >= shortest)
         continue;
-      if (!part_them(c, p, q) || !is_confirmed(peaks, count, p, q)) continue;
+      if (!part_them(c, b, p, q) || !is_confirmed(b, peaks, count, p, q)) continue;
       shortest = p_px + q_px;
       periods->regular = true;
       periods->due = fminf(p_px, q_px) >= LEAST_DUE_PX;
@@ -199,7 +216,7 @@ static bool holds_beside(const correlation *c, const rc_periods *periods) {
 }
 
 /* By all peaks that are near whole multiples of it: a px off each time is half a square soon. */
-static void refine_base(const peak *peaks, int count, rc_periods *periods) {
+static void refine_base(const bar *b, const peak *peaks, int count, rc_periods *periods) {
   rc_copy *p = &periods->base[0], *q = &periods->base[1];
   double area = (double)p->a * q->b - (double)p->b * q->a, ii = 0, ij = 0, jj = 0;
   double ia = 0, ib = 0, ja = 0, jb = 0;
@@ -207,7 +224,7 @@ static void refine_base(const peak *peaks, int count, rc_periods *periods) {
     const peak *at = &peaks[n];
     double i = rc_round((float)((at->x * q->b - at->y * q->a) / area));
     double j = rc_round((float)((at->y * p->a - at->x * p->b) / area));
-    if (at->value < REGULAR || !(at->rise > 0) || fabs(at->x - i * p->a - j * q->a) > MOST_OFF_PX ||
+    if (at->value < b->value || !(at->rise > 0) || fabs(at->x - i * p->a - j * q->a) > MOST_OFF_PX ||
         fabs(at->y - i * p->b - j * q->b) > MOST_OFF_PX)
       continue;
     ii += i * i, ij += i * j, jj += j * j;
@@ -218,25 +235,38 @@ static void refine_base(const peak *peaks, int count, rc_periods *periods) {
   *q = (rc_copy){(float)((ja * ii - ia * ij) / both), (float)((jb * ii - ib * ij) / both), 0.f};
 }
 
-static recede_status collect(rc_context *context, const correlation *c, rc_periods *periods) {
-  peak *peaks;
-  int found = 0, most = (c->lag + 1) * (2 * c->lag + 1);
-  RC_TRY(RC_NEW(context, most, &peaks));
+/* All peaks, strongest first. */
+static recede_status find_peaks(rc_context *context, const correlation *c, peak **peaks,
+                                int *count) {
+  peak *found;
+  RC_TRY(RC_NEW(context, (c->lag + 1) * (2 * c->lag + 1), &found));
+  *count = 0;
   for (int dy = 0; dy <= c->lag; dy++)
     for (int dx = -c->lag; dx <= c->lag; dx++) {
       if (!is_peak(c, dx, dy)) continue;
       /* Beyond the largest lag nothing is known: no peak there. */
       bool inside = abs(dx) < c->lag && dy < c->lag;
-      float own = value_at(c, dx, dy), rise = inside ? rise_to(c, 0, 0, dx, dy) : 0;
-      periods->repeats =
-          periods->repeats || (inside && (own >= REPEATS || rise >= REPEATS_BY_RISE));
-      peaks[found++] = (peak){
-          own, rise, (float)dx + vertex(value_at(c, dx - 1, dy), own, value_at(c, dx + 1, dy)),
-          (float)dy + vertex(value_at(c, dx, dy - 1), own, value_at(c, dx, dy + 1))};
+      float own = value_at(c, dx, dy);
+      found[(*count)++] = (peak){
+          own, inside ? rise_to(c, 0, 0, dx, dy) : 0,
+          (float)dx + vertex(value_at(c, dx - 1, dy), own, value_at(c, dx + 1, dy)),
+          (float)dy + vertex(value_at(c, dx, dy - 1), own, value_at(c, dx, dy + 1)), inside};
     }
-  qsort(peaks, (size_t)found, sizeof *peaks, stronger_first);
-  find_base(c, peaks, found, periods);
-  if (periods->regular) refine_base(peaks, found, periods);
+  qsort(found, (size_t)*count, sizeof *found, stronger_first);
+  *peaks = found;
+  return RECEDE_OK;
+}
+
+static recede_status find_by_all(rc_context *context, const correlation *c, rc_periods *periods) {
+  peak *peaks;
+  int found;
+  RC_TRY(find_peaks(context, c, &peaks, &found));
+  for (int i = 0; i < found; i++)
+    periods->repeats =
+        periods->repeats ||
+        (peaks[i].inside && (peaks[i].value >= REPEATS || peaks[i].rise >= REPEATS_BY_RISE));
+  find_base(c, &by_all, peaks, found, periods);
+  if (periods->regular) refine_base(&by_all, peaks, found, periods);
   periods->due = periods->due && holds_beside(c, periods);
   for (int i = 0; i < found && periods->count + 1 < RC_MOST_PERIODS; i++) {
     periods->copies[periods->count++] = (rc_copy){peaks[i].x, peaks[i].y, 0.f};
@@ -245,8 +275,78 @@ static recede_status collect(rc_context *context, const correlation *c, rc_perio
   return RECEDE_OK;
 }
 
+/* How far what lies within so many px is brighter than a pixel, both known; 0 elsewhere. */
+static void take_joints(const rc_level *level, const float *trait, float *joint) {
+  enum { R = JOINTS_WITHIN_PX };
+  double squares = 0, count = 0;
+  for (int y = 0; y < level->height; y++)
+    for (int x = 0; x < level->width; x++) {
+      float sum = 0, seen = 0;
+      size_t at = (size_t)y * (size_t)level->width + (size_t)x;
+      joint[at] = 0;
+      if (!level->room[at]) continue;
+      for (int v = y - R; v <= y + R; v++)
+        for (int u = x - R; u <= x + R; u++) {
+          if (!rc_inside(level->width, level->height, u, v)) continue;
+          size_t near = (size_t)v * (size_t)level->width + (size_t)u;
+          if (level->room[near]) sum += trait[near], seen++;
+        }
+      joint[at] = sum / seen - trait[at];
+      squares += (double)(joint[at] * joint[at]), count++;
+    }
+  float most = count > 0 ? MOST_DEVIATIONS * (float)sqrt(squares / count) : 0;
+  for (size_t i = 0; i < (size_t)level->width * (size_t)level->height; i++)
+    joint[i] = fminf(fmaxf(joint[i], -most), most);
+}
+
+static float highest_near(const correlation *c, int dx, int dy) {
+  float most = -1;
+  for (int j = dy - 1; j <= dy + 1; j++)
+    for (int i = dx - 1; i <= dx + 1; i++) most = fmaxf(most, value_at(c, i, j));
+  return most;
+}
+
+/* Whether all that the periods lead to correlates, and what lies between does not. */
+static bool is_lattice(const correlation *c, const rc_periods *periods) {
+  double mean[4], off = 0;
+  for (int k = 0; k < 4; k++) { /* the last three are half a period off, one way or both */
+    double sum = 0, count = 0;
+    for (int n = 0; n < REACHED * REACHED; n++) {
+      float i = (float)(n % REACHED - REACHED / 2) + .5f * (float)(k % 2);
+      float j = (float)(n / REACHED - REACHED / 2) + .5f * (float)(k / 2);
+      int dx = (int)rc_round(i * periods->base[0].a + j * periods->base[1].a);
+      int dy = (int)rc_round(i * periods->base[0].b + j * periods->base[1].b);
+      if (abs(dx) >= c->lag || abs(dy) >= c->lag || (!k && !dx && !dy)) continue;
+      float value = k ? value_at(c, dx, dy) : highest_near(c, dx, dy);
+      if (!k && value < LEAST_ON) return false;
+      sum += (double)value, count++;
+    }
+    mean[k] = count > 0 ? sum / count : 1;
+    if (k) off = fmax(off, mean[k]);
+  }
+  return off <= MOST_OFF * mean[0];
+}
+
+static recede_status find_by_joints(rc_context *context, correlation *c, rc_periods *periods) {
+  peak *peaks;
+  int found;
+  float *joint;
+  const rc_level *level = c->level;
+  RC_TRY(RC_NEW(context, (size_t)level->width * (size_t)level->height, &joint));
+  take_joints(level, c->trait, joint);
+  c->trait = joint;
+  RC_TRY(rc_parallel(context, c->lag + 1, correlate_row, c));
+  RC_TRY(find_peaks(context, c, &peaks, &found));
+  find_base(c, &by_joints, peaks, found, periods);
+  if (!periods->regular) return RECEDE_OK;
+  refine_base(&by_joints, peaks, found, periods);
+  periods->regular = is_lattice(c, periods);
+  periods->due = false; /* that is told by more than joints */
+  return RECEDE_OK;
+}
+
 recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key, int count,
-                              rc_periods *periods) {
+                              bool joints, rc_periods *periods) {
   size_t pixels = (size_t)level->width * (size_t)level->height;
   int sources = rc_level_all_sources(level).end;
   int third = (level->width < level->height ? level->width : level->height) / 3;
@@ -266,7 +366,8 @@ recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64
         level->order[rc_below((uint32_t)rc_random(key, (uint32_t)i, 0, 0), (uint32_t)sources)];
   c.trait = trait, c.points = points;
   RC_TRY(rc_parallel(context, c.lag + 1, correlate_row, &c));
-  RC_TRY(collect(context, &c, periods));
+  RC_TRY(find_by_all(context, &c, periods));
+  if (!periods->regular && joints) RC_TRY(find_by_joints(context, &c, periods));
   rc_release(context, mark);
   return RECEDE_OK;
 }

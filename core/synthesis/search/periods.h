@@ -22,8 +22,8 @@ typedef struct rc_periods {
 } rc_periods;
 
 /* Peaks of the masked correlation of the level's sources with themselves, displaced in the plane.
- * count: of points. */
+ * count: of points. joints: what is not regular by itself may be so by its joints. */
 recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key, int count,
-                              rc_periods *periods);
+                              bool joints, rc_periods *periods);
 
 #endif

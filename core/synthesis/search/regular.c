@@ -23,7 +23,7 @@ recede_status rc_is_due(rc_context *context, const rc_image *images, const rc_ma
   RC_TRY(rc_level_new(context, &flags[levels - 1], &coarse, &level));
   level.sides.px = 1;
   RC_TRY(rc_level_see(context, &images[levels - 1], &none, 1.f, gain, true, &level));
-  RC_TRY(rc_find_periods(context, &level, key, RC_REGULAR_POINTS, &periods));
+  RC_TRY(rc_find_periods(context, &level, key, RC_REGULAR_POINTS, false, &periods));
   *due = periods.due;
   for (int k = 0; k < 2; k++) {
     float px = (float)(1 << (levels - 1));
