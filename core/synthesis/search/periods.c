@@ -40,6 +40,9 @@ static const bar by_all = {.6f, .75f, .4f};
 static const bar by_joints = {.25f, .25f, .2f};
 #define LEAST_ON .2f
 #define MOST_OFF .65
+/* And the picture is so many of its cells large: among fewer some pairs agree by chance, as in the
+ * grain of a table (14) or in drapery (15). */
+#define LEAST_CELLS 16.f
 #define REACHED 9 /* so many periods each way */
 #define LEAST_SINE .5f
 /* Of what is smaller patches see nearly two. */
@@ -308,14 +311,17 @@ static float highest_near(const correlation *c, int dx, int dy) {
 
 /* Whether all that the periods lead to correlates, and what lies between does not. */
 static bool is_lattice(const correlation *c, const rc_periods *periods) {
+  const rc_copy *p = &periods->base[0], *q = &periods->base[1];
   double mean[4], off = 0;
+  float pixels = (float)(c->level->width * c->level->height);
+  if (pixels < LEAST_CELLS * fabsf(p->a * q->b - p->b * q->a)) return false;
   for (int k = 0; k < 4; k++) { /* the last three are half a period off, one way or both */
     double sum = 0, count = 0;
     for (int n = 0; n < REACHED * REACHED; n++) {
       float i = (float)(n % REACHED - REACHED / 2) + .5f * (float)(k % 2);
       float j = (float)(n / REACHED - REACHED / 2) + .5f * (float)(k / 2);
-      int dx = (int)rc_round(i * periods->base[0].a + j * periods->base[1].a);
-      int dy = (int)rc_round(i * periods->base[0].b + j * periods->base[1].b);
+      int dx = (int)rc_round(i * p->a + j * q->a);
+      int dy = (int)rc_round(i * p->b + j * q->b);
       if (abs(dx) >= c->lag || abs(dy) >= c->lag || (!k && !dx && !dy)) continue;
       float value = k ? value_at(c, dx, dy) : highest_near(c, dx, dy);
       if (!k && value < LEAST_ON) return false;
