@@ -20,11 +20,11 @@ typedef struct rc_descent {
   rc_image images[RC_MAX_LEVELS];
   rc_mask flags[RC_MAX_LEVELS];
   rc_traits traits[RC_MAX_LEVELS];
-  bool due;                         /* as rc_is_due says, */
-  rc_copy due_by[2];                /* by these */
-  rc_periods periods;               /* of the coarsest level */
-  rc_lattice lattice;               /* px of the coarsest level */
-  rc_bends bends;                   /* the lattice's */
+  bool due;                        /* as rc_is_due says, */
+  rc_copy due_by[2];               /* by these */
+  rc_periods periods;              /* of the coarsest level */
+  rc_lattice lattice;              /* px of the coarsest level */
+  rc_bends bends;                  /* the lattice's */
   rc_crossing lines[RC_ALL_LINES]; /* px of the finest level */
   int line_count;
   rc_rails rails;

@@ -43,7 +43,8 @@ static const bar by_joints = {.25f, .25f, .2f};
 /* And the picture is so many of its cells large: among fewer some pairs agree by chance, as in the
  * grain of a table (14) or in drapery (15). */
 #define LEAST_CELLS 16.f
-#define REACHED 9 /* so many periods each way */
+#define MOST_BASES 8 /* are tried */
+#define REACHED 9    /* so many periods each way */
 #define LEAST_SINE .5f
 /* Of what is smaller patches see nearly two. */
 #define LEAST_DUE_PX 7.f
@@ -159,8 +160,7 @@ static bool part_them(const correlation *c, const bar *b, const peak *p, const p
 }
 
 /* Two peaks come by chance, but what they span has more: at their sum or difference. */
-static bool is_confirmed(const bar *b, const peak *peaks, int count, const peak *p,
-                         const peak *q) {
+static bool is_confirmed(const bar *b, const peak *peaks, int count, const peak *p, const peak *q) {
   for (int n = 0; n < 4 * count; n++) {
     const peak *at = &peaks[n / 4];
     float by = n % 2 ? 1.f : -1.f, sign = n / 2 % 2 ? 1.f : -1.f;
@@ -172,23 +172,25 @@ static bool is_confirmed(const bar *b, const peak *peaks, int count, const peak 
   return false;
 }
 
-/* The two that together are shortest. */
-static void find_base(const correlation *c, const bar *b, const peak *peaks, int count,
-                      rc_periods *periods) {
+/* The two that together are shortest, of those longer than *length, which becomes theirs. */
+static bool find_base(const correlation *c, const bar *b, const peak *peaks, int count,
+                      float *length, rc_periods *periods) {
   float shortest = INFINITY;
   for (int i = 0; i < count; i++)
     for (int j = 0; j < i; j++) {
       const peak *p = &peaks[i], *q = &peaks[j];
       if (!is_regular(b, p) || !is_regular(b, q)) continue;
       float p_px = sqrtf(p->x * p->x + p->y * p->y), q_px = sqrtf(q->x * q->x + q->y * q->y);
-      if (fabsf(p->x * q->y - p->y * q->x) < LEAST_SINE * p_px * q_px || p_px + q_px >= shortest)
+      if (fabsf(p->x * q->y - p->y * q->x) < LEAST_SINE * p_px * q_px || p_px + q_px <= *length ||
+          p_px + q_px >= shortest)
         continue;
       if (!part_them(c, b, p, q) || !is_confirmed(b, peaks, count, p, q)) continue;
       shortest = p_px + q_px;
-      periods->regular = true;
       periods->due = fminf(p_px, q_px) >= LEAST_DUE_PX;
       periods->base[0] = (rc_copy){p->x, p->y, 0.f}, periods->base[1] = (rc_copy){q->x, q->y, 0.f};
     }
+  *length = shortest;
+  return shortest < INFINITY;
 }
 
 static double variance_of(const correlation *c) {
@@ -227,7 +229,8 @@ static void refine_base(const bar *b, const peak *peaks, int count, rc_periods *
     const peak *at = &peaks[n];
     double i = rc_round((float)((at->x * q->b - at->y * q->a) / area));
     double j = rc_round((float)((at->y * p->a - at->x * p->b) / area));
-    if (at->value < b->value || !(at->rise > 0) || fabs(at->x - i * p->a - j * q->a) > MOST_OFF_PX ||
+    if (at->value < b->value || !(at->rise > 0) ||
+        fabs(at->x - i * p->a - j * q->a) > MOST_OFF_PX ||
         fabs(at->y - i * p->b - j * q->b) > MOST_OFF_PX)
       continue;
     ii += i * i, ij += i * j, jj += j * j;
@@ -250,10 +253,10 @@ static recede_status find_peaks(rc_context *context, const correlation *c, peak 
       /* Beyond the largest lag nothing is known: no peak there. */
       bool inside = abs(dx) < c->lag && dy < c->lag;
       float own = value_at(c, dx, dy);
-      found[(*count)++] = (peak){
-          own, inside ? rise_to(c, 0, 0, dx, dy) : 0,
-          (float)dx + vertex(value_at(c, dx - 1, dy), own, value_at(c, dx + 1, dy)),
-          (float)dy + vertex(value_at(c, dx, dy - 1), own, value_at(c, dx, dy + 1)), inside};
+      found[(*count)++] =
+          (peak){own, inside ? rise_to(c, 0, 0, dx, dy) : 0,
+                 (float)dx + vertex(value_at(c, dx - 1, dy), own, value_at(c, dx + 1, dy)),
+                 (float)dy + vertex(value_at(c, dx, dy - 1), own, value_at(c, dx, dy + 1)), inside};
     }
   qsort(found, (size_t)*count, sizeof *found, stronger_first);
   *peaks = found;
@@ -263,12 +266,13 @@ static recede_status find_peaks(rc_context *context, const correlation *c, peak 
 static recede_status find_by_all(rc_context *context, const correlation *c, rc_periods *periods) {
   peak *peaks;
   int found;
+  float length = 0;
   RC_TRY(find_peaks(context, c, &peaks, &found));
   for (int i = 0; i < found; i++)
     periods->repeats =
         periods->repeats ||
         (peaks[i].inside && (peaks[i].value >= REPEATS || peaks[i].rise >= REPEATS_BY_RISE));
-  find_base(c, &by_all, peaks, found, periods);
+  periods->regular = find_base(c, &by_all, peaks, found, &length, periods);
   if (periods->regular) refine_base(&by_all, peaks, found, periods);
   periods->due = periods->due && holds_beside(c, periods);
   for (int i = 0; i < found && periods->count + 1 < RC_MOST_PERIODS; i++) {
@@ -336,17 +340,18 @@ static bool is_lattice(const correlation *c, const rc_periods *periods) {
 static recede_status find_by_joints(rc_context *context, correlation *c, rc_periods *periods) {
   peak *peaks;
   int found;
-  float *joint;
+  float *joint, length = 0;
   const rc_level *level = c->level;
   RC_TRY(RC_NEW(context, (size_t)level->width * (size_t)level->height, &joint));
   take_joints(level, c->trait, joint);
   c->trait = joint;
   RC_TRY(rc_parallel(context, c->lag + 1, correlate_row, c));
   RC_TRY(find_peaks(context, c, &peaks, &found));
-  find_base(c, &by_joints, peaks, found, periods);
-  if (!periods->regular) return RECEDE_OK;
-  refine_base(&by_joints, peaks, found, periods);
-  periods->regular = is_lattice(c, periods);
+  for (int n = 0; n < MOST_BASES && !periods->regular; n++) {
+    if (!find_base(c, &by_joints, peaks, found, &length, periods)) break;
+    refine_base(&by_joints, peaks, found, periods);
+    periods->regular = is_lattice(c, periods);
+  }
   periods->due = false; /* that is told by more than joints */
   return RECEDE_OK;
 }

@@ -138,8 +138,7 @@ static bool try_branch(const work *w, const loose *end, float way, rc_crossing *
                           .ends_inside = true};
   return way >= SHORTEST_PX && rc_lies_in_the_hole(w->seen->flags, branch) &&
          rc_follow_branch(w->seen, w->chart, rc_windows_of(branch, false), branch) &&
-         rc_crossing_is_sure(branch) &&
-         rc_end_stands_alone(w->seen, w->chart, branch, w->reach_px);
+         rc_crossing_is_sure(branch) && rc_end_stands_alone(w->seen, w->chart, branch, w->reach_px);
 }
 
 static void drop_end(work *w, int i) {
@@ -214,7 +213,8 @@ recede_status rc_branches_add(rc_context *context, const rc_image *image, const 
   rc_lines_pair_up(&ends, RC_SURE_STRENGTH, all, &all_count);
   add_crossing(all, all_count, &w);
   collect(&ends, &w);
-  while (w.line_count + 2 <= RC_ALL_LINES && (end_at_line(&w) || end_at_each_other(&w)));
+  while (w.line_count + 2 <= RC_ALL_LINES && (end_at_line(&w) || end_at_each_other(&w)))
+    ;
   *count = w.line_count;
   for (int i = 0; i < *count; i++) {
     lines[i] = rc_crossing_coarser(lines[i], -exponent);

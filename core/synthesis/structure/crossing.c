@@ -8,7 +8,7 @@
 /* Signal to noise of one that the others may be parallel to. */
 #define LEAST_LEADING_STRENGTH 12.f
 #define PARALLEL .9976f /* cosine of 4 degrees, in the plane */
-#define SURE_KEPT .9f /* at such a strength */
+#define SURE_KEPT .9f   /* at such a strength */
 /* Beside setts even a kerb is no stronger than they are. It is no chance if, of the hole's border,
  * so much is as strong, this part of its contrast is kept, and no patch holds it across: kerbs
  * reach 10 px, cracks in a road, whose texture moves in with nothing, 4. Seen coarser, where setts

@@ -19,15 +19,15 @@
  * where it meets another. */
 typedef struct rc_crossing {
   float ax, ay, bx, by;
-  float strength;  /* signal to noise of its weaker side */
-  float kept;      /* the part of its contrast that its pieces' sources have */
-  float rise;      /* -1..1: how far a is a step across */
-  float as_strong; /* the part of the rest of the hole's border where some line is as strong */
-  bool alone;      /* hardly any parallel to it looks the same */
-  bool faint;      /* it is known only by what tells two textures apart */
+  float strength;   /* signal to noise of its weaker side */
+  float kept;       /* the part of its contrast that its pieces' sources have */
+  float rise;       /* -1..1: how far a is a step across */
+  float as_strong;  /* the part of the rest of the hole's border where some line is as strong */
+  bool alone;       /* hardly any parallel to it looks the same */
+  bool faint;       /* it is known only by what tells two textures apart */
   bool ends_inside; /* at a */
-  bool band;       /* it is wide, and hardly anything at the hole's border is as strong */
-  float axis[3];   /* the weights of colours it was seen by */
+  bool band;        /* it is wide, and hardly anything at the hole's border is as strong */
+  float axis[3];    /* the weights of colours it was seen by */
   /* How far it reaches to its left and right, px where w = 1; 0 where that is not told. */
   float reach_px[2];
   int pieces;

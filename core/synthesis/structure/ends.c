@@ -60,7 +60,8 @@ static void search_border(void *user, int item, int thread) {
   (void)thread;
   ends->best[item] = (rc_run){.strength = 0};
   for (int d = 0; d < RC_END_DIRECTIONS; d++) {
-    rc_run p = rc_run_measure(&ends->picture, x, y, ends->direction[d][0], ends->direction[d][1], 1);
+    rc_run p =
+        rc_run_measure(&ends->picture, x, y, ends->direction[d][0], ends->direction[d][1], 1);
     if (p.strength <= ends->best[item].strength) continue;
     ends->best[item] = p;
     ends->best_direction[item] = d;
@@ -108,7 +109,8 @@ static int collect_border(const rc_mask *flags, int32_t *border) {
 }
 
 static void set_directions(float (*direction)[2]) {
-  const double c = .9987954562051724, s = .049067674327418015; /* of 360 / RC_END_DIRECTIONS degrees */
+  const double c = .9987954562051724,
+               s = .049067674327418015; /* of 360 / RC_END_DIRECTIONS degrees */
   double x = 1, y = 0;
   for (int d = 0; d < RC_END_DIRECTIONS; d++) {
     direction[d][0] = (float)x, direction[d][1] = (float)y;

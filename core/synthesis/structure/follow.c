@@ -262,8 +262,8 @@ bool rc_follow(const rc_seen *picture, const rc_chart *chart, int windows, rc_cr
   return false;
 }
 
-/* Its pieces in groups of so many, each from beside the hole again: a clear joint may be shorter than
- * the way it has to go. */
+/* Its pieces in groups of so many, each from beside the hole again: a clear joint may be shorter
+ * than the way it has to go. */
 static bool follow_groups(const frame *f, int size, const rc_profile *own, float *sum) {
   float bend = 0, kept;
   *sum = 0;

@@ -61,8 +61,10 @@ static void refine(const rc_ends *ends, float least_strength, rc_crossing *c) {
     c->strength = 0;
     for (int i = 0; i < REFINED_PLACES; i++) {
       float across = REFINED_STEP_PX * (float)(i - REFINED_PLACES / 2);
-      a[i] = rc_run_measure(&ends->picture, from.ax - across * uy, from.ay + across * ux, ux, uy, -1);
-      b[i] = rc_run_measure(&ends->picture, from.bx - across * uy, from.by + across * ux, ux, uy, 1);
+      a[i] =
+          rc_run_measure(&ends->picture, from.ax - across * uy, from.ay + across * ux, ux, uy, -1);
+      b[i] =
+          rc_run_measure(&ends->picture, from.bx - across * uy, from.by + across * ux, ux, uy, 1);
     }
     for (int i = 0; i < REFINED_PLACES; i++)
       for (int k = 0; k < REFINED_PLACES; k++) {
@@ -114,20 +116,23 @@ static void keep(rc_crossing lines[RC_MOST_LINES], int *count, rc_crossing c) {
   if (*count < RC_MOST_LINES) (*count)++;
 }
 
-void rc_lines_pair_up(const rc_ends *ends, float least_strength, rc_crossing lines[RC_MOST_LINES], int *count) {
+void rc_lines_pair_up(const rc_ends *ends, float least_strength, rc_crossing lines[RC_MOST_LINES],
+                      int *count) {
   int width = ends->picture.flags->width;
   for (int i = 0; i < ends->border_count; i++) {
     if (!rc_end_stands_out(ends, i, least_strength)) continue;
     for (int j = i + 1; j < ends->border_count; j++) {
       if (ends->best[j].strength < least_strength) continue;
-      const float *u = ends->direction[ends->best_direction[i]], *v = ends->direction[ends->best_direction[j]];
+      const float *u = ends->direction[ends->best_direction[i]],
+                  *v = ends->direction[ends->best_direction[j]];
       rc_crossing c = {.ax = (float)(ends->border[i] % width),
                        .ay = (float)(ends->border[i] / width),
                        .bx = (float)(ends->border[j] % width),
                        .by = (float)(ends->border[j] / width)};
       float dx = c.ax - c.bx, dy = c.ay - c.by, length = sqrtf(dx * dx + dy * dy);
       if (length < SHORTEST_PX || dx * u[0] + dy * u[1] < STRAIGHT * length ||
-          dx * v[0] + dy * v[1] > -STRAIGHT * length || !rc_lies_in_the_hole(ends->picture.flags, &c) ||
+          dx * v[0] + dy * v[1] > -STRAIGHT * length ||
+          !rc_lies_in_the_hole(ends->picture.flags, &c) ||
           !rc_end_stands_out(ends, j, least_strength))
         continue;
       refine(ends, least_strength, &c);
