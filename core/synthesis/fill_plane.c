@@ -18,6 +18,7 @@
 #include "synthesis/search/effort.h"
 #include "synthesis/search/lock.h"
 #include "synthesis/search/regular.h"
+#include "synthesis/search/rest.h"
 #include "synthesis/search/traits.h"
 #include "synthesis/sources/alike.h"
 #include "synthesis/sources/near.h"
@@ -203,16 +204,6 @@ static recede_status find_regions(rc_context *context, rc_descent *e) {
   return RECEDE_OK;
 }
 
-/* What is laid continues nothing. */
-static void forget_rest(const rc_level *finest, rc_descent *e) {
-  for (int y = finest->box.y0; y < finest->box.y1 && finest->laid && e->rest; y++)
-    for (int x = finest->box.x0; x < finest->box.x1; x++) {
-      uint8_t *rest = &e->rest[(size_t)y * (size_t)finest->width + (size_t)x];
-      if (!finest->laid[rc_level_at(finest, x, y)] || !*rest) continue;
-      *rest = 0, e->rest_count--;
-    }
-}
-
 static void count_shortfall(rc_context *context, const rc_descent *e, const rc_level *level,
                             rc_shortfall *shortfall) {
   recede_report *report = &context->report;
@@ -361,7 +352,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   rc_rails found = e.rails;
   RC_TRY(rc_descend(context, &e, &finest));
   RC_TRY(rc_dash_rows_lay(context, &dashes, &finest));
-  forget_rest(&finest, &e);
+  if (e.rest) rc_rest_forget_laid(&finest, e.rest, &e.rest_count);
   if (!rc_runs(&known->rails) && !rc_has_sides(&e.sides))
     *known = (rc_known_rails){e.on_rails ? e.rails : found, e.chart, e.on_rails};
   context->report.surface = e.chart.raised ? RECEDE_SURFACE_RAISED : RECEDE_SURFACE_FLAT;
