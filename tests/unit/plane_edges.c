@@ -56,6 +56,21 @@ static double kerb_of_alley(double u, double v) {
   return fabs(u) < .3 ? 1 : 0;
 }
 
+/* Large slabs, no two rows of which end alike: 1 in their joints. */
+static double joint_of_slabs(double u, double v) {
+  static const double ends[] = {-1e9, -13, 0, 17, 1e9}, across[] = {5, 0, -7, 11};
+  int row = 0;
+  while (u >= ends[row + 1]) row++;
+  double to_next = fmin(u - ends[row], ends[row + 1] - u), along = v - across[row];
+  double to_end = fabs(along - 26 * round(along / 26));
+  return fmin(to_next, to_end) < .25 ? 1 : 0;
+}
+
+#define JOINT .1
+static double slabs(double u, double v) {
+  return joint_of_slabs(u, v) > 0 ? JOINT + .3 * grain(u, v, 150) : .45 + 2 * grain(u, v, 160);
+}
+
 static double railway(double u, double v) {
   double along = v / 5 - floor(v / 5);
   if (fabs(u) < .35) return BRIGHT;
@@ -138,20 +153,21 @@ static void kerbs(void) {
   go_on(scenes, G_N_ELEMENTS(scenes), .92);
 }
 
-/* Of the pixels that lie well within the kerb the part that is as dark. */
-static double kerb_of(const scene *s, bool round) {
-  picture kerb = picture_of(s, kerb_of_alley);
+/* Of the pixels that lie well within what is 1 the part that is of that brightness. */
+static double part_of(const scene *s, bool round, double (*what)(double u, double v),
+                      double brightness) {
+  picture inside_of = picture_of(s, what);
   task t = filled(s, round);
   double right = 0, all = 0;
   for (int y = s->hole.y0; y < s->hole.y1; y++)
     for (int x = s->hole.x0; x < s->hole.x1; x++) {
       bool inside = picture_get(&t.mask, x, y, 0) > 0;
       for (int k = 0; k < 9 && inside; k++)
-        inside = picture_get(&kerb, x - 1 + k % 3, y - 1 + k / 3, 0) > .9;
-      all += inside, right += inside && fabs(picture_get(&t.result, x, y, 0) - KERB) < .1;
+        inside = picture_get(&inside_of, x - 1 + k % 3, y - 1 + k / 3, 0) > .9;
+      all += inside, right += inside && fabs(picture_get(&t.result, x, y, 0) - brightness) < .1;
     }
   task_clear(&t);
-  picture_clear(&kerb);
+  picture_clear(&inside_of);
   g_test_message("slant %.0f, tilt %.0f, direction %.0f, %s hole: %.0f of %.0f px", s->slant_deg,
                  s->tilt_deg, s->direction_deg, round ? "round" : "square", right, all);
   return right / all;
@@ -164,10 +180,23 @@ static void kerbs_among_setts(void) {
       {alley, 60, 0, -60, .3, .5, MIDDLE}, {alley, 55, 5, 35, .3, .5, MIDDLE},
   };
   double sum = 0;
-  for (guint i = 0; i < G_N_ELEMENTS(scenes); i++)
-    sum += (kerb_of(&scenes[i], false) + kerb_of(&scenes[i], true)) / (2 * G_N_ELEMENTS(scenes));
+  for (guint i = 0; i < 2 * G_N_ELEMENTS(scenes); i++)
+    sum += part_of(&scenes[i / 2], i % 2, kerb_of_alley, KERB) / (2 * G_N_ELEMENTS(scenes));
   g_test_message("together %.3f", sum);
   g_assert_cmpfloat(sum, >, .7);
+}
+
+static void slabs_joints(void) {
+  static const scene scenes[] = {
+      {slabs, 55, -5, 15, 0, 0, MIDDLE},  {slabs, 60, 0, -35, 0, 0, MIDDLE},
+      {slabs, 50, 10, 70, 0, -7, MIDDLE}, {slabs, 60, 40, 20, .5, -7, MIDDLE},
+      {slabs, 0, 0, 25, 0, .5, MIDDLE},
+  };
+  double sum = 0;
+  for (guint i = 0; i < 2 * G_N_ELEMENTS(scenes); i++)
+    sum += part_of(&scenes[i / 2], i % 2, joint_of_slabs, JOINT) / (2 * G_N_ELEMENTS(scenes));
+  g_test_message("together %.3f", sum);
+  g_assert_cmpfloat(sum, >, .93);
 }
 
 static void rails(void) {
@@ -209,6 +238,7 @@ int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/edges/kerbs", kerbs);
   g_test_add_func("/edges/kerbs-among-setts", kerbs_among_setts);
+  g_test_add_func("/edges/slabs", slabs_joints);
   g_test_add_func("/edges/rails", rails);
   g_test_add_func("/edges/posts", posts);
   g_test_add_func("/edges/corners", corners);

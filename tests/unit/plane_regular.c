@@ -30,6 +30,15 @@ static double windows(double u, double v, int k) {
   return .15 + .08 * noise_at((int)storey, (int)column, 11) + .02 * k;
 }
 
+/* Slabs of all shades, stained, in rows of which every other is half one off; 6 texels by 4. */
+static double slabs(double u, double v, int k) {
+  double row = floor(u / 4), along = v / 6 + .5 * fmod(fabs(row), 2);
+  double in_u = u - 4 * row, in_v = 6 * (along - floor(along));
+  if (in_u < .3 || in_v < .3) return .12;
+  return .32 + .45 * noise_at((int)row, (int)floor(along), 12) + .02 * k + stains(u, v, .5, 13) +
+         2 * stains(u, v, 1.5, 14);
+}
+
 typedef struct scene {
   pattern *draw;
   double slant_deg, tilt_deg;
@@ -59,6 +68,29 @@ static double right_of(const scene *s) {
   return right / all;
 }
 
+/* Of the hole's joints the part that is dark, less that of the rest. */
+static double joints_of(const scene *s) {
+  double dark[2] = {0, 0}, all[2] = {0, 0};
+  picture truth =
+      picture_of_plane(WIDTH, HEIGHT, 3, RECEDE_U8, s->draw, TEXEL_PX, s->slant_deg, s->tilt_deg);
+  task t = task_new(picture_copy(&truth), "quality=draft");
+  t.params.slant_deg = s->slant_deg, t.params.tilt_deg = s->tilt_deg;
+  task_round_hole(&t, s->hole);
+  task_succeeds(&t);
+  for (int y = s->hole.y0; y < s->hole.y1; y++)
+    for (int x = s->hole.x0; x < s->hole.x1; x++) {
+      if (!(picture_get(&t.mask, x, y, 0) > .5f)) continue;
+      int in_joint = picture_get(&truth, x, y, 1) < .16f;
+      all[in_joint]++, dark[in_joint] += picture_get(&t.result, x, y, 1) < .2f;
+    }
+  task_clear(&t);
+  picture_clear(&truth);
+  g_test_message("slant %.0f, tilt %.0f, hole at %d,%d: %.3f of joints dark, %.3f of the rest",
+                 s->slant_deg, s->tilt_deg, s->hole.x0, s->hole.y0, dark[1] / all[1],
+                 dark[0] / all[0]);
+  return dark[1] / all[1] - dark[0] / all[0];
+}
+
 /* Where one square goes on as the next, or a window ends in the wall, .3 to .8 are right. */
 static void go_on(const scene *scenes, int count) {
   for (int i = 0; i < count; i++) g_assert_cmpfloat(right_of(&scenes[i]), >, .95);
@@ -84,9 +116,23 @@ static void windows_go_on(void) {
   go_on(scenes, G_N_ELEMENTS(scenes));
 }
 
+static void slabs_go_on(void) {
+  static const scene scenes[] = {
+      {slabs, 0, 0, {250, 160, 390, 280}},     {slabs, 40, 90, {240, 180, 380, 320}},
+      {slabs, 55, -20, {260, 210, 420, 330}},  {slabs, 50, -15, {200, 240, 370, 360}},
+      {slabs, 30, -100, {240, 160, 400, 300}}, {slabs, 60, 30, {280, 220, 430, 340}},
+  };
+  double sum = 0;
+  for (guint i = 0; i < G_N_ELEMENTS(scenes); i++)
+    sum += joints_of(&scenes[i]) / G_N_ELEMENTS(scenes);
+  g_test_message("together %.3f", sum);
+  g_assert_cmpfloat(sum, >, .81);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/regular/squares", squares_go_on);
   g_test_add_func("/regular/windows", windows_go_on);
+  g_test_add_func("/regular/slabs", slabs_go_on);
   return g_test_run();
 }

@@ -143,10 +143,10 @@ recede_status rc_continue_rest(rc_context *context, rc_level *level, uint64_t ke
   return RECEDE_OK;
 }
 
-void rc_rest_forget_laid(const rc_level *finest, uint8_t *rest, uint64_t *count) {
+void rc_rest_forget_laid(const rc_level *finest, uint8_t *marked, uint64_t *count) {
   for (int y = finest->box.y0; y < finest->box.y1 && finest->laid; y++)
     for (int x = finest->box.x0; x < finest->box.x1; x++) {
-      uint8_t *at = &rest[(size_t)y * (size_t)finest->width + (size_t)x];
+      uint8_t *at = &marked[(size_t)y * (size_t)finest->width + (size_t)x];
       if (!finest->laid[rc_level_at(finest, x, y)] || !*at) continue;
       *at = 0, (*count)--;
     }

@@ -10,7 +10,7 @@
  * the level: becomes 1 for them, NULL = not asked for. */
 recede_status rc_continue_rest(rc_context *context, rc_level *level, uint64_t key, uint8_t *marked,
                                uint64_t *count);
-/* What is laid continues nothing: takes it from the rest, a byte each pixel, and its count. */
-void rc_rest_forget_laid(const rc_level *finest, uint8_t *rest, uint64_t *count);
+/* What is laid continues nothing: takes it from what is marked, and its count. */
+void rc_rest_forget_laid(const rc_level *finest, uint8_t *marked, uint64_t *count);
 
 #endif
