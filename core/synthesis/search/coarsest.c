@@ -31,6 +31,8 @@
 /* What is regular costs .56 to 1.17 of what others do that go on with the wrong square or window;
  * roof tiles whose other starts are good as they are 1.26 and more. */
 #define FAVOUR_OF_PERIODS 1.22
+/* And what is so by its joints alone .68 to 1.15, pavers whose other starts are good 1.17. */
+#define FAVOUR_OF_JOINTS 1.16
 /* What comes from another board is not what this one shows again and again beside the hole. */
 #define FAVOUR_OF_BOARDS 1.25
 /* Moves along the rails are of so many px and more, nearest first, as many as whole.c looks at,
@@ -255,7 +257,7 @@ static recede_status try_periods(rc_context *context, rc_descent *e, int first, 
   level->chart.raised = false;
   RC_TRY(try_starts(context, e, &s, p, level, scratch, &by_periods, &own));
   if (e->line_count) own += price_of_broken_lines(e, level, &by_periods);
-  e->by_periods = own < FAVOUR_OF_PERIODS * *misfit;
+  e->by_periods = own < (e->periods.by_joints ? FAVOUR_OF_JOINTS : FAVOUR_OF_PERIODS) * *misfit;
   if (e->by_periods)
     *misfit = own, *best = by_periods;
   else

@@ -352,6 +352,7 @@ static recede_status find_by_joints(rc_context *context, correlation *c, rc_peri
     refine_base(&by_joints, peaks, found, periods);
     periods->regular = is_lattice(c, periods);
   }
+  periods->by_joints = periods->regular;
   periods->due = false; /* that is told by more than joints */
   return RECEDE_OK;
 }

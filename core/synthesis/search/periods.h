@@ -18,6 +18,7 @@ typedef struct rc_periods {
   bool repeats;    /* the same piece twice is natural, or not seen */
   bool regular;    /* all there is comes again both ways, by these two: */
   rc_copy base[2]; /* short, and far from parallel */
+  bool by_joints;  /* and nothing but its joints does */
   bool due;        /* it is larger than a patch, and does so beside the hole */
 } rc_periods;
 
