@@ -182,13 +182,27 @@ static bool end_at_each_other(work *w) {
   return true;
 }
 
+/* Those that cross the hole in other directions. */
+static void add_crossing(const rc_crossing *all, int count, work *w) {
+  for (int i = 0; i < count && w->line_count < RC_MOST_LINES; i++) {
+    rc_crossing c = all[i];
+    loose a = {c.ax, c.ay, {0, 0}, 0, 0}, b = {c.bx, c.by, {0, 0}, 0, 0};
+    if (is_continued(w, &a) || is_continued(w, &b) || c.as_strong > RC_MOST_AS_STRONG ||
+        !rc_stands_alone(w->seen, w->chart, &c, w->reach_px, NULL) ||
+        !rc_follow(w->seen, w->chart, rc_windows_of(&c, false), &c) || !rc_crossing_is_sure(&c))
+      continue;
+    w->lines[w->line_count++] = c;
+  }
+}
+
 recede_status rc_branches_add(rc_context *context, const rc_image *image, const rc_mask *mask,
                               int exponent, const rc_chart *chart, rc_crossing lines[RC_ALL_LINES],
                               int *count) {
   rc_chart here = rc_chart_coarser(*chart, exponent);
+  rc_crossing all[RC_MOST_LINES];
   rc_seen seen;
   rc_ends ends;
-  int before = *count;
+  int all_count = 0, before = *count;
   const float *axis = rc_brightness_axis(image);
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_see(context, image, mask, axis, &seen));
@@ -196,6 +210,8 @@ recede_status rc_branches_add(rc_context *context, const rc_image *image, const 
   work w = {.seen = &seen, .chart = &here, .lines = lines, .line_count = *count};
   w.reach_px = rc_longer_side(rc_box_of(mask, RC_TARGET));
   for (int i = 0; i < *count; i++) lines[i] = rc_crossing_coarser(lines[i], exponent);
+  rc_lines_pair_up(&ends, RC_SURE_STRENGTH, all, &all_count);
+  add_crossing(all, all_count, &w);
   collect(&ends, &w);
   while (w.line_count + 2 <= RC_ALL_LINES && (end_at_line(&w) || end_at_each_other(&w)))
     ;

@@ -1,6 +1,6 @@
-/* Lines that do not leave the hole again: joints that end at another line, and two that meet, as
- * slabs' do. Only what is no chance, and no joint of many: those keep in order by themselves, and
- * moved in alone break the ones that cross them. */
+/* Lines that the parallel ones leave out: those that cross them, joints that end at another one,
+ * and two that meet in the hole, as slabs' do. Only what is no chance, and no joint of many: those
+ * keep in order by themselves, and moved in alone break the ones that cross them. */
 #ifndef RECEDE_SYNTHESIS_STRUCTURE_BRANCHES_H
 #define RECEDE_SYNTHESIS_STRUCTURE_BRANCHES_H
 

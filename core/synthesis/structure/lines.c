@@ -5,7 +5,6 @@
 
 #include "base/memory.h"
 #include "synthesis/structure/alone.h"
-#include "synthesis/structure/ends.h"
 #include "synthesis/structure/follow.h"
 
 /* Lines are looked for at the finest level whose hole has at most so many border pixels. */
@@ -117,8 +116,8 @@ static void keep(rc_crossing lines[RC_MOST_LINES], int *count, rc_crossing c) {
   if (*count < RC_MOST_LINES) (*count)++;
 }
 
-static void pair_up(const rc_ends *ends, float least_strength, rc_crossing lines[RC_MOST_LINES],
-                    int *count) {
+void rc_lines_pair_up(const rc_ends *ends, float least_strength, rc_crossing lines[RC_MOST_LINES],
+                      int *count) {
   int width = ends->picture.flags->width;
   for (int i = 0; i < ends->border_count; i++) {
     if (!rc_end_stands_out(ends, i, least_strength)) continue;
@@ -182,8 +181,8 @@ recede_status rc_lines_at(rc_context *context, const rc_seen *seen, bool faint,
   rc_block *mark = rc_mark(context);
   *count = 0;
   RC_TRY(rc_ends_find(context, seen, &ends));
-  pair_up(&ends, RC_LEAST_STRENGTH, lines, count);
-  if (faint && !*count) pair_up(&ends, RC_LEAST_FAINT_STRENGTH, lines, count);
+  rc_lines_pair_up(&ends, RC_LEAST_STRENGTH, lines, count);
+  if (faint && !*count) rc_lines_pair_up(&ends, RC_LEAST_FAINT_STRENGTH, lines, count);
   rc_release(context, mark);
   return RECEDE_OK;
 }

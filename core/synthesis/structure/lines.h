@@ -5,7 +5,7 @@
 #define RECEDE_SYNTHESIS_STRUCTURE_LINES_H
 
 #include "synthesis/structure/crossing.h"
-#include "synthesis/structure/seen.h"
+#include "synthesis/structure/ends.h"
 
 /* Signal to noise of a line on both sides of the hole. Edges of stones reach 7. Where nothing does
  * fainter ones may be asked for: even a kerb among setts has no more. */
@@ -22,6 +22,9 @@ const float *rc_brightness_axis(const rc_image *image);
  * there are none, fainter ones. */
 recede_status rc_lines_at(rc_context *context, const rc_seen *seen, bool faint,
                           rc_crossing lines[RC_MOST_LINES], int *count);
+/* The same of ends that are known. */
+void rc_lines_pair_up(const rc_ends *ends, float least_strength, rc_crossing lines[RC_MOST_LINES],
+                      int *count);
 /* Parallel lines of the plane that cross the hole and can be continued, strongest first. image and
  * mask: the level rc_lines_level says, 2^exponent times coarser than the finest, of which chart is.
  * corners: only those that cut a corner off the hole. One that leaves it at a flat angle has the
