@@ -13,7 +13,6 @@
 #include "image/tone.h"
 #include "synthesis/composition/compose.h"
 #include "synthesis/composition/detail.h"
-#include "synthesis/search/cuts.h"
 #include "synthesis/search/descent.h"
 #include "synthesis/search/effort.h"
 #include "synthesis/search/lock.h"
@@ -128,6 +127,18 @@ static recede_status choose_surface(rc_context *context, const rc_problem *probl
   return RECEDE_OK;
 }
 
+/* Not those of dashes. */
+static recede_status add_branches(rc_context *context, const rc_dash_rows *dashes, int from,
+                                  rc_descent *e) {
+  int before = e->line_count, added;
+  RC_TRY(rc_branches_add(context, &e->images[from], &e->flags[from], from, &e->chart, e->lines,
+                         &e->line_count));
+  added = e->line_count - before;
+  rc_dash_rows_drop_lines(dashes, e->lines + before, &added);
+  e->line_count = before + added;
+  return RECEDE_OK;
+}
+
 /* Lines that cross the hole, and whether the texture runs along them. */
 static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes, rc_descent *e) {
   int from = e->params->engine_lines ? rc_lines_level(e->flags, e->level_count) : -1;
@@ -145,8 +156,7 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
                             &e->line_count, &e->rails, &e->sides));
   if (!rc_runs(&e->rails) && !e->due && e->params->engine_branches)
-    RC_TRY(rc_branches_add(context, &e->images[from], &e->flags[from], from, &e->chart, e->lines,
-                           &e->line_count));
+    RC_TRY(add_branches(context, dashes, from, e));
   if (!e->sides.boundary_count) rc_dash_rows_drop_lines(dashes, e->lines, &e->line_count);
   if (!e->params->engine_rails) e->rails = (rc_rails){0};
   if (rc_runs(&e->rails) && e->params->surface != RECEDE_SURFACE_RAISED && e->params->engine_gauge)
@@ -364,30 +374,4 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   const uint8_t which = restored ? RC_TARGET | RC_KNOWN : RC_TARGET;
   RC_TRY(rc_tracks_apply(context, &tracks, &e.chart, 0, &problem->flags, which, 1, filled));
   return rc_tone_apply(context, &tone, &problem->flags, which, 1, filled);
-}
-
-uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int channels,
-                        const recede_params *params) {
-  uint64_t c = (uint64_t)channels, box = columns * rows;
-  uint64_t most_cut = rc_most_cut_box(rc_effort_of(params)->cut_again_px);
-  uint64_t cut = box < most_cut ? box : most_cut, frame = 2 * (columns + rows) + 4;
-  uint64_t cuts = most_cut ? RC_CUT_BYTES_PER_PX * (cut + frame) : 0;
-  uint64_t grown = 4 * box + (256 << 10); /* the box that detail is measured in */
-  /* Levels, and of the coarser ones what their pixels are compared by. */
-  uint64_t pyramid = pixels * (4 * c + 1) / 3 + pixels * 4 / 3;
-  /* Of the coarser levels, 1/3 of the finest, only the fields stay; the coarsest alone has sources
-   * in order, but it may be the only one. */
-  uint64_t levels = pixels * (4 + 1 + 1 + 4) + box * (12 + 4 + 1 + 1) * 4 / 3;
-  /* Trials, too: the coarsest level may be the only one. */
-  uint64_t search = box * (12 + 4 + 4) * 3 + pixels * (4 + 1) + cuts;
-  uint64_t pads = rows * (40 * c + 20) + 16 * c * (columns + 5);
-  uint64_t composition = box * (12 * c + 4) + pads;
-  uint64_t detail = (grown < pixels ? grown : pixels) * (12 * c + 1) + pixels;
-  uint64_t last = search > composition ? search : composition;
-  uint64_t conditions = pixels * 11 / 10 + (64 << 10);
-  uint64_t descent = levels + (last > detail ? last : detail);
-  /* Before it, of the coarsest level. */
-  uint64_t kin = RC_KIN_BYTES_PER_PX * (pixels < RC_MOST_LOOKED_AT ? pixels : RC_MOST_LOOKED_AT);
-  uint64_t steps = pixels * (4 * c + 5);
-  return pyramid + conditions + (descent > kin ? descent : kin) + steps + ((uint64_t)4 << 20);
 }

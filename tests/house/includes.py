@@ -3,7 +3,7 @@
 
 base <- image <- plane <- synthesis <- recede.c <- {cli, plugin}; kernels stand on base alone; the
 command and the plug-in see only recede.h. Within synthesis, above its own headers, sources <-
-structure <- search <- composition <- fill_plane.c and steps.c, and paper by itself.
+structure <- search <- composition <- fill_plane.c, plane_bytes.c and steps.c, and paper by itself.
 """
 import re
 import sys
@@ -37,7 +37,7 @@ PUBLIC = "recede.h"
 
 def core_room(path, core):
     folder = path.relative_to(core).parent.as_posix()
-    if path.name in ("fill_plane.c", "steps.c"):
+    if path.name in ("fill_plane.c", "plane_bytes.c", "steps.c"):
         return "the stages"
     return "" if folder == "." else folder
 

@@ -297,16 +297,16 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   uint64_t key = rc_key((uint64_t)e->params->seed, 99, 0);
   double misfit;
   rc_trial best;
-  if (e->params->engine_periods)
-    RC_TRY(rc_find_periods(context, level, key, RC_PERIOD_POINTS, e->params->engine_joints,
-                           &e->periods));
   /* What stands alone comes again in no lattice. */
   bool lone = e->line_count && rc_crossing_is_lone(&e->lines[0]);
+  bool regular = e->params->engine_regular && e->params->surface != RECEDE_SURFACE_RAISED && !lone;
+  bool joints = e->params->engine_joints && regular && !rc_runs(&e->rails);
+  if (e->params->engine_periods)
+    RC_TRY(rc_find_periods(context, level, key, RC_PERIOD_POINTS, joints, &e->periods));
   if (e->params->engine_lattice && !lone)
     RC_TRY(rc_lattice_find(context, level, e->periods.copies, e->periods.count, &e->bends,
                            &e->lattice));
-  if (!e->params->engine_regular || e->params->surface == RECEDE_SURFACE_RAISED || lone)
-    e->periods.regular = e->periods.due = false;
+  if (!regular) e->periods.regular = e->periods.due = false;
   /* Also where traits tell what brightness did not: beside a square lies another one. */
   if (e->periods.due) rc_conditions_forget_kin(&e->conditions);
   /* Where lines cross the hole there are things that go on as a whole. But whole copies that break

@@ -15,6 +15,7 @@
 #define LEAST_LAG_PX 3
 /* A lag that fewer of the points share tells nothing. */
 #define LEAST_SHARED .25
+#define NOT_KNOWN 0.f
 #define LEAST_PEAK .12f
 /* A texture repeats by nature where it correlates so much with itself a period away, drawn bricks,
  * tiles and planks .77 to .99; so do even sand and roads, where nobody sees what comes twice. Or
@@ -40,9 +41,9 @@ static const bar by_all = {.6f, .75f, .4f};
 static const bar by_joints = {.25f, .25f, .2f};
 #define LEAST_ON .2f
 #define MOST_OFF .65
-/* And the picture is so many of its cells large: among fewer some pairs agree by chance, as in the
- * grain of a table (14) or in drapery (15). */
-#define LEAST_CELLS 16.f
+/* And the sources are so many of its cells large (10 to 39): among fewer some pairs agree by
+ * chance, as in the grain of a table (.6) or in drapery (4). */
+#define LEAST_CELLS 6.f
 #define MOST_BASES 8 /* are tried */
 #define REACHED 9    /* so many periods each way */
 #define LEAST_SINE .5f
@@ -97,7 +98,7 @@ static void correlate_lag(const correlation *c, int dx, int dy, float *value) {
     if (!level->room[at]) continue;
     add_pair(&s, (double)c->trait[c->points[i]], (double)c->trait[at]);
   }
-  *value = s.n >= LEAST_SHARED * c->count ? (float)correlation_of(&s) : 0.f;
+  *value = s.n >= LEAST_SHARED * c->count ? (float)correlation_of(&s) : NOT_KNOWN;
 }
 
 static void correlate_row(void *user, int dy, int thread) {
@@ -282,7 +283,8 @@ static recede_status find_by_all(rc_context *context, const correlation *c, rc_p
   return RECEDE_OK;
 }
 
-/* How far what lies within so many px is brighter than a pixel, both known; 0 elsewhere. */
+/* How far what lies within so many px is brighter than a pixel, both known, up to so many
+ * deviations; 0 elsewhere. */
 static void take_joints(const rc_level *level, const float *trait, float *joint) {
   enum { R = JOINTS_WITHIN_PX };
   double squares = 0, count = 0;
@@ -317,7 +319,7 @@ static float highest_near(const correlation *c, int dx, int dy) {
 static bool is_lattice(const correlation *c, const rc_periods *periods) {
   const rc_copy *p = &periods->base[0], *q = &periods->base[1];
   double mean[4], off = 0;
-  float pixels = (float)(c->level->width * c->level->height);
+  float pixels = (float)rc_level_all_sources(c->level).end;
   if (pixels < LEAST_CELLS * fabsf(p->a * q->b - p->b * q->a)) return false;
   for (int k = 0; k < 4; k++) { /* the last three are half a period off, one way or both */
     double sum = 0, count = 0;
@@ -326,7 +328,9 @@ static bool is_lattice(const correlation *c, const rc_periods *periods) {
       float j = (float)(n / REACHED - REACHED / 2) + .5f * (float)(k / 2);
       int dx = (int)rc_round(i * p->a + j * q->a);
       int dy = (int)rc_round(i * p->b + j * q->b);
-      if (abs(dx) >= c->lag || abs(dy) >= c->lag || (!k && !dx && !dy)) continue;
+      if (abs(dx) >= c->lag || abs(dy) >= c->lag || (!k && !dx && !dy) ||
+          value_at(c, dx, dy) == NOT_KNOWN)
+        continue;
       float value = k ? value_at(c, dx, dy) : highest_near(c, dx, dy);
       if (!k && value < LEAST_ON) return false;
       sum += (double)value, count++;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/real.h"
 #include "synthesis/structure/alone.h"
 #include "synthesis/structure/ends.h"
 #include "synthesis/structure/follow.h"
@@ -127,6 +128,12 @@ static float way_to_lines(const work *w, const loose *end) {
   return first;
 }
 
+static bool is_target(const rc_mask *flags, float x, float y) {
+  int column = rc_floor(x + .5f), row = rc_floor(y + .5f);
+  return rc_inside(flags->width, flags->height, column, row) &&
+         *rc_flag(flags, column, row) & RC_TARGET;
+}
+
 /* Takes a line in that ends inside, so far from its end, if it can be followed and is no chance. */
 static bool try_branch(const work *w, const loose *end, float way, rc_crossing *branch) {
   *branch = (rc_crossing){.ax = end->x - way * end->out[0],
@@ -136,7 +143,8 @@ static bool try_branch(const work *w, const loose *end, float way, rc_crossing *
                           .strength = end->strength,
                           .as_strong = end->as_strong,
                           .ends_inside = true};
-  return way >= SHORTEST_PX && rc_lies_in_the_hole(w->seen->flags, branch) &&
+  return way >= SHORTEST_PX && is_target(w->seen->flags, branch->ax, branch->ay) &&
+         rc_lies_in_the_hole(w->seen->flags, branch) &&
          rc_follow_branch(w->seen, w->chart, rc_windows_of(branch, false), branch) &&
          rc_crossing_is_sure(branch) && rc_end_stands_alone(w->seen, w->chart, branch, w->reach_px);
 }
@@ -191,6 +199,7 @@ static void add_crossing(const rc_crossing *all, int count, work *w) {
         !rc_stands_alone(w->seen, w->chart, &c, w->reach_px, NULL) ||
         !rc_follow(w->seen, w->chart, rc_windows_of(&c, false), &c) || !rc_crossing_is_sure(&c))
       continue;
+    c.alone = true;
     w->lines[w->line_count++] = c;
   }
 }

@@ -73,7 +73,7 @@ void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count) {
   keep(rc_crossing_is_lone, lines, count);
 }
 
-void rc_crossings_drop_faint(rc_crossing lines[RC_MOST_LINES], int *count) {
+void rc_crossings_drop_faint(rc_crossing *lines, int *count) {
   keep(is_no_faint_one, lines, count);
 }
 

@@ -7,7 +7,7 @@
 #include "synthesis/copy.h"
 
 #define RC_MOST_LINES 8 /* parallel ones */
-#define RC_ALL_LINES 24
+#define RC_ALL_LINES 24 /* and all that cross them, or end there */
 #define RC_MOST_PIECES 24
 
 /* Signal to noise: stones' edges are as strong as this, but chance ones keep less. */
@@ -59,7 +59,7 @@ rc_crossing rc_crossing_coarser(rc_crossing line, int exponent);
 void rc_crossings_keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
                                 int *count);
 void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count);
-void rc_crossings_drop_faint(rc_crossing lines[RC_MOST_LINES], int *count);
+void rc_crossings_drop_faint(rc_crossing *lines, int *count);
 /* Keeps those that have nearly all of the hole on one side. flags: of the same level. */
 void rc_crossings_keep_corners(const rc_mask *flags, rc_crossing lines[RC_MOST_LINES], int *count);
 

@@ -82,8 +82,7 @@ bool rc_dash_laid_copy(const rc_ground *ground, const rc_dash_row *row, const rc
   return true;
 }
 
-void rc_dash_rows_drop_lines(const rc_dash_rows *rows, rc_crossing lines[RC_MOST_LINES],
-                             int *count) {
+void rc_dash_rows_drop_lines(const rc_dash_rows *rows, rc_crossing *lines, int *count) {
   int kept = 0;
   for (int i = 0; i < *count; i++) {
     bool is_row = false;

@@ -51,7 +51,6 @@ rc_box rc_dash_laid_box(const rc_ground *ground, const rc_dash_row *row, const r
 bool rc_dash_laid_copy(const rc_ground *ground, const rc_dash_row *row, const rc_dash_laid *laid,
                        const rc_chart *chart, float x, float y, rc_copy *copy);
 /* Takes out lines that run along a row: it says what they show in the hole. */
-void rc_dash_rows_drop_lines(const rc_dash_rows *rows, rc_crossing lines[RC_MOST_LINES],
-                             int *count);
+void rc_dash_rows_drop_lines(const rc_dash_rows *rows, rc_crossing *lines, int *count);
 
 #endif

@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/real.h"
-#include "synthesis/structure/follow.h"
 
 /* Profiles are averaged along a run outside the hole. */
 #define RUN 16                 /* samples */

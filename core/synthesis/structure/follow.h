@@ -5,11 +5,6 @@
 #include "synthesis/structure/lines.h"
 #include "synthesis/structure/profile.h"
 
-/* Where a line's profile begins outside the hole. */
-#define RC_PROFILE_FROM_PX 2.f
-/* A line's own profile is that of so many px. */
-#define RC_PROFILE_NEAR_PX 14
-
 /* In how many windows a line must go on that no other vouches for. seen_coarser: than others are.
  */
 int rc_windows_of(const rc_crossing *line, bool seen_coarser);
@@ -17,7 +12,7 @@ int rc_windows_of(const rc_crossing *line, bool seen_coarser);
  * leaves the picture before the hole could be crossed, or does not go on in so many windows. How
  * far it reaches is told of faint ones, too. chart: of the same level. */
 bool rc_follow(const rc_seen *picture, const rc_chart *chart, int windows, rc_crossing *line);
-/* The same of one that ends inside, which is known at b alone. */
+/* The same of one that ends inside, which is known at b alone; how far it reaches is not told. */
 bool rc_follow_branch(const rc_seen *picture, const rc_chart *chart, int windows,
                       rc_crossing *branch);
 

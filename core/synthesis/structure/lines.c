@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/real.h"
 #include "synthesis/structure/alone.h"
 #include "synthesis/structure/follow.h"
 
@@ -45,7 +46,7 @@ bool rc_lies_in_the_hole(const rc_mask *flags, const rc_crossing *c) {
     float t = (float)i / (float)samples;
     int x = (int)floorf(c->ax + t * (c->bx - c->ax) + .5f);
     int y = (int)floorf(c->ay + t * (c->by - c->ay) + .5f);
-    inside += (*rc_flag(flags, x, y) & RC_TARGET) != 0;
+    inside += rc_inside(flags->width, flags->height, x, y) && *rc_flag(flags, x, y) & RC_TARGET;
   }
   return (float)inside > LEAST_INSIDE * (float)samples;
 }

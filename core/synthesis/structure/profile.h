@@ -8,6 +8,11 @@
 #define RC_PROFILE_HALF 3
 #define RC_PROFILE (2 * RC_PROFILE_HALF + 1)
 
+/* Where a line's profile begins outside the hole. */
+#define RC_PROFILE_FROM_PX 2.f
+/* A line's own profile is that of so many px. */
+#define RC_PROFILE_NEAR_PX 14
+
 /* A line in a picture. value: the brightness of one pixel; false: it is none to look at. */
 typedef struct rc_ruler {
   bool (*value)(const void *picture, int x, int y, float *value);
