@@ -199,8 +199,7 @@ static void add_crossing(const rc_crossing *all, int count, work *w) {
         !rc_stands_alone(w->seen, w->chart, &c, w->reach_px, NULL) ||
         !rc_follow(w->seen, w->chart, rc_windows_of(&c, false), &c) || !rc_crossing_is_sure(&c))
       continue;
-    c.alone = true;
-    w->lines[w->line_count++] = c;
+    w->lines[w->line_count++] = c; /* not alone: rows of a chess board are no rails */
   }
 }
 
