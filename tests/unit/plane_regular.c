@@ -45,16 +45,22 @@ typedef struct scene {
   area hole;
 } scene;
 
-/* The part of the hole. */
-static double right_of(const scene *s) {
-  double right = 0, all = 0;
-  picture truth =
+static task filled(const scene *s, picture *truth) {
+  *truth =
       picture_of_plane(WIDTH, HEIGHT, 3, RECEDE_U8, s->draw, TEXEL_PX, s->slant_deg, s->tilt_deg);
-  task t = task_new(picture_copy(&truth), "quality=draft");
+  task t = task_new(picture_copy(truth), "quality=draft");
   t.params.slant_deg = s->slant_deg, t.params.tilt_deg = s->tilt_deg;
   task_round_hole(&t, s->hole);
   task_succeeds(&t);
   task_assert_outside(&t);
+  return t;
+}
+
+/* The part of the hole. */
+static double right_of(const scene *s) {
+  double right = 0, all = 0;
+  picture truth;
+  task t = filled(s, &truth);
   for (int y = s->hole.y0; y < s->hole.y1; y++)
     for (int x = s->hole.x0; x < s->hole.x1; x++) {
       if (!(picture_get(&t.mask, x, y, 0) > .5f)) continue;
@@ -71,12 +77,8 @@ static double right_of(const scene *s) {
 /* Of the hole's joints the part that is dark, less that of the rest. */
 static double joints_of(const scene *s) {
   double dark[2] = {0, 0}, all[2] = {0, 0};
-  picture truth =
-      picture_of_plane(WIDTH, HEIGHT, 3, RECEDE_U8, s->draw, TEXEL_PX, s->slant_deg, s->tilt_deg);
-  task t = task_new(picture_copy(&truth), "quality=draft");
-  t.params.slant_deg = s->slant_deg, t.params.tilt_deg = s->tilt_deg;
-  task_round_hole(&t, s->hole);
-  task_succeeds(&t);
+  picture truth;
+  task t = filled(s, &truth);
   for (int y = s->hole.y0; y < s->hole.y1; y++)
     for (int x = s->hole.x0; x < s->hole.x1; x++) {
       if (!(picture_get(&t.mask, x, y, 0) > .5f)) continue;
