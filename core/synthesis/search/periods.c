@@ -44,6 +44,10 @@ static const bar by_joints = {.25f, .25f, .2f};
 /* And the sources are so many of its cells large (10 to 39): among fewer some pairs agree by
  * chance, as in the grain of a table (.6) or in drapery (4). */
 #define LEAST_CELLS 6.f
+/* So it must be beside the hole, too, off by .4 to 1.4 of what all joints vary by; heaps in rows
+ * with bare ground around the hole by 1.7 and more. Smaller than what is due are jittered stones.
+ */
+#define MOST_JOINTS_OFF 1.6
 #define MOST_BASES 8 /* are tried */
 #define REACHED 9    /* so many periods each way */
 #define LEAST_SINE .5f
@@ -202,7 +206,7 @@ static double variance_of(const correlation *c) {
 
 /* Heaps that lie in rows, but not around the hole, are not due there: sources beside its box must
  * be like what is one period off, by what all vary by. */
-static bool holds_beside(const correlation *c, const rc_periods *periods) {
+static bool holds_beside(const correlation *c, const rc_periods *periods, double most_off) {
   const rc_level *level = c->level;
   double off = 0, pairs = 0;
   for (int y = level->box.y0 - BESIDE_PX; y < level->box.y1 + BESIDE_PX; y++)
@@ -218,7 +222,7 @@ static bool holds_beside(const correlation *c, const rc_periods *periods) {
         off += d * d, pairs++;
       }
     }
-  return pairs > 0 && off / pairs <= MOST_DUE_OFF * variance_of(c);
+  return pairs > 0 && off / pairs <= most_off * variance_of(c);
 }
 
 /* By all peaks that are near whole multiples of it: a px off each time is half a square soon. */
@@ -275,7 +279,7 @@ static recede_status find_by_all(rc_context *context, const correlation *c, rc_p
         (peaks[i].inside && (peaks[i].value >= REPEATS || peaks[i].rise >= REPEATS_BY_RISE));
   periods->regular = find_base(c, &by_all, peaks, found, &length, periods);
   if (periods->regular) refine_base(&by_all, peaks, found, periods);
-  periods->due = periods->due && holds_beside(c, periods);
+  periods->due = periods->due && holds_beside(c, periods, MOST_DUE_OFF);
   for (int i = 0; i < found && periods->count + 1 < RC_MOST_PERIODS; i++) {
     periods->copies[periods->count++] = (rc_copy){peaks[i].x, peaks[i].y, 0.f};
     periods->copies[periods->count++] = (rc_copy){-peaks[i].x, -peaks[i].y, 0.f};
@@ -354,7 +358,8 @@ static recede_status find_by_joints(rc_context *context, correlation *c, rc_peri
   for (int n = 0; n < MOST_BASES && !periods->regular; n++) {
     if (!find_base(c, &by_joints, peaks, found, &length, periods)) break;
     refine_base(&by_joints, peaks, found, periods);
-    periods->regular = is_lattice(c, periods);
+    periods->regular =
+        periods->due && is_lattice(c, periods) && holds_beside(c, periods, MOST_JOINTS_OFF);
   }
   periods->by_joints = periods->regular;
   periods->due = false; /* that is told by more than joints */
