@@ -75,6 +75,19 @@ static void set_frame(frame *f) {
   f->ruler.ux = dx / f->length, f->ruler.uy = dy / f->length;
 }
 
+static frame frame_of(const rc_seen *picture, const rc_chart *chart, int windows,
+                      const struct way *way, rc_crossing *line) {
+  frame f = {.ruler = {.value = rc_seen_source, .picture = picture},
+             .chart = chart,
+             .line = line,
+             .most_reduced = way->most_reduced,
+             .windows = windows};
+  if (way->widens) f.ruler.chart = chart;
+  line->pieces = way->pieces;
+  set_frame(&f);
+  return f;
+}
+
 /* Moves an end across the line until its nearest px look like its run does in the mean; outwards is
  * -1 at a and 1 at b. own: the profile there. */
 static bool pin(const frame *f, float outwards, float *x, float *y, rc_profile *own) {
@@ -214,14 +227,7 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int wi
   float most = LEAST_KEPT;
   rc_crossing best;
   bool found = false;
-  frame f = {.ruler = {.value = rc_seen_source, .picture = picture},
-             .chart = chart,
-             .line = line,
-             .most_reduced = way->most_reduced,
-             .windows = windows};
-  if (way->widens) f.ruler.chart = chart;
-  line->pieces = way->pieces;
-  set_frame(&f);
+  frame f = frame_of(picture, chart, windows, way, line);
   if (!pin(&f, -1, &line->ax, &line->ay, &own_a) || !pin(&f, 1, &line->bx, &line->by, &own_b))
     return false;
   set_frame(&f);
@@ -281,15 +287,9 @@ bool rc_follow_branch(const rc_seen *picture, const rc_chart *chart, int windows
                       rc_crossing *branch) {
   rc_profile own;
   rc_crossing best = *branch;
-  frame f = {.ruler = {.value = rc_seen_source, .picture = picture},
-             .chart = chart,
-             .line = branch,
-             .most_reduced = ways->most_reduced,
-             .windows = windows};
+  frame f = frame_of(picture, chart, windows, ways, branch);
   float most = LEAST_KEPT, kept;
   bool found = false, is_clear = branch->strength >= RC_CLEAR_STRENGTH;
-  branch->pieces = ways->pieces;
-  set_frame(&f);
   if (!pin(&f, 1, &branch->bx, &branch->by, &own)) return false;
   set_frame(&f);
   if (!goes_on(&f, 1, branch->bx, branch->by, &own)) return false;
