@@ -296,6 +296,14 @@ static recede_status try_lattice(rc_context *context, rc_descent *e, int first, 
   return RECEDE_OK;
 }
 
+/* What all sources told: those near the hole, fewer, may not. */
+static void take_due(rc_descent *e) {
+  float px = (float)(1 << (e->level_count - 1));
+  for (int k = 0; k < 2; k++)
+    e->periods.base[k] = (rc_copy){e->due_by[k].a / px, e->due_by[k].b / px, 0.f};
+  e->periods.regular = e->periods.due = true;
+}
+
 recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *level,
                               rc_workspace *scratch) {
   int exponent = e->level_count - 1, wanted = e->params->engine_starts;
@@ -313,6 +321,7 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   if (e->params->engine_lattice && !lone)
     RC_TRY(rc_lattice_find(context, level, e->periods.copies, e->periods.count, &e->bends,
                            &e->lattice));
+  if (regular && e->due && !e->periods.regular) take_due(e);
   if (!regular) e->periods.regular = e->periods.due = false;
   /* Also where traits tell what brightness did not: beside a square lies another one. */
   if (e->periods.due) rc_conditions_forget_kin(&e->conditions);
