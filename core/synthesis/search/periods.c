@@ -23,20 +23,27 @@
 
 /* What is regular repeats by two periods that are far from parallel. */
 typedef struct bar {
+  int bases;          /* are tried, shortest first */
   float value, rise;  /* the least of each period */
   float confirmed;    /* of a third one, their sum or difference */
   float cells;        /* so large are the sources at least: among fewer some agree by chance */
-  double most_off;    /* half a period off, of what whole ones correlate by */
+  double whole;       /* the least mean of all that whole periods lead to */
+  double most_off;    /* half a period off, of that mean */
   double most_beside; /* what lies beside the hole is off from its place in this, squared, of what
                          all vary by */
+  bool alone;         /* where no third one is seen two are enough */
 } bar;
 /* Drawn chess boards, hexagons, pavers, parquet and facades correlate by .6 to .98, and rise by .75
  * to 1.1. Dunes have .9 and 1, but one way. Beside the hole they are off by .1 to 1, bare ground
  * among heaps by 2. */
-static const bar by_all = {.6f, .75f, .4f, 0, 0, 1.2};
+static const bar by_all = {1, .6f, .75f, .4f, 0, 0, 0, 1.2, false};
 /* A grid of bars rises less on the way along them, and is only .16 to .77 off between, but it
  * correlates by .82 to .98 wherever its periods lead. */
-static const bar by_bars = {.8f, .4f, .75f, 3.f, .8, 1.2};
+static const bar by_bars = {8, .8f, .4f, .75f, 3.f, .65, .8, .6, false};
+/* Cells of which the picture shows two or three each way: what would confirm them may lie beyond
+ * the lags looked at. In the mean .73 to .93, and beside the hole off by .2 to .54, where
+ * gravel crosses roof tiles .7. */
+static const bar by_cells = {1, .7f, .6f, .4f, 3.f, .65, .65, .6, true};
 /* Tiles that are stained, or of many colours, have nothing in common but their joints, thin lines
  * that are darker or brighter than what lies within so many px: hexagons, octagons, window panes,
  * figured tiles off by .21 to .54 between; walls in courses, setts and boards .72 to .98. Beside
@@ -44,12 +51,11 @@ static const bar by_bars = {.8f, .4f, .75f, 3.f, .8, 1.2};
  * grain of a table .6, drapery 4. */
 #define JOINTS_WITHIN_PX 3
 #define MOST_DEVIATIONS 2.f /* a joint is a joint, however dark */
-static const bar by_joints = {.25f, .25f, .2f, 6.f, .65, 1.6};
+static const bar by_joints = {8, .25f, .25f, .2f, 6.f, 0, .65, 1.6, false};
 /* Of a lattice every place that its periods lead to correlates by so much: joints .21 to .52, walls
  * in courses, setts and boards less than .17. */
 #define LEAST_ON .2f
-#define MOST_BASES 8 /* are tried */
-#define REACHED 9    /* so many periods each way */
+#define REACHED 9 /* so many periods each way */
 #define LEAST_SINE .5f
 /* Of what is smaller patches see nearly two; what is so small by its joints is jittered stones. */
 #define LEAST_DUE_PX 7.f
@@ -69,9 +75,17 @@ static bool part_them(const rc_correlation *c, const bar *b, const rc_peak *p, c
          rc_correlation_rise(c, -px, -py, qx, qy) >= b->rise;
 }
 
+static bool is_seen(const rc_correlation *c, float x, float y) {
+  float most = (float)c->lag - 1;
+  return fabsf(x) <= most && fabsf(y) <= most &&
+         rc_correlation_at(c, (int)rc_round(x), (int)rc_round(y)) != RC_NOT_KNOWN;
+}
+
 /* Two peaks come by chance, but what they span has more: at their sum or difference. */
-static bool is_confirmed(const bar *b, const rc_peak *peaks, int count, const rc_peak *p,
-                         const rc_peak *q) {
+static bool is_confirmed(const rc_correlation *c, const bar *b, const rc_peak *peaks, int count,
+                         const rc_peak *p, const rc_peak *q) {
+  if (b->alone && !is_seen(c, p->x + q->x, p->y + q->y) && !is_seen(c, p->x - q->x, p->y - q->y))
+    return true;
   for (int n = 0; n < 4 * count; n++) {
     const rc_peak *at = &peaks[n / 4];
     float by = n % 2 ? 1.f : -1.f, sign = n / 2 % 2 ? 1.f : -1.f;
@@ -95,7 +109,7 @@ static bool find_base(const rc_correlation *c, const bar *b, const rc_peak *peak
       if (fabsf(p->x * q->y - p->y * q->x) < LEAST_SINE * p_px * q_px || p_px + q_px <= *length ||
           p_px + q_px >= shortest)
         continue;
-      if (!part_them(c, b, p, q) || !is_confirmed(b, peaks, count, p, q)) continue;
+      if (!part_them(c, b, p, q) || !is_confirmed(c, b, peaks, count, p, q)) continue;
       shortest = p_px + q_px;
       periods->due = fminf(p_px, q_px) >= LEAST_DUE_PX;
       periods->base[0] = (rc_copy){p->x, p->y, 0.f}, periods->base[1] = (rc_copy){q->x, q->y, 0.f};
@@ -201,14 +215,14 @@ static bool is_lattice(const rc_correlation *c, const bar *b, const rc_periods *
     mean[k] = count > 0 ? sum / count : 1;
     if (k) off = fmax(off, mean[k]);
   }
-  return off <= b->most_off * mean[0];
+  return mean[0] >= b->whole && off <= b->most_off * mean[0];
 }
 
 /* By the first base that is a lattice, if it has to be one, and due, if it has to be. */
 static bool find_regular(const rc_correlation *c, const bar *b, const rc_peak *peaks, int count,
                          bool lattice, bool due, rc_periods *periods) {
   float length = 0;
-  for (int n = 0; n < MOST_BASES; n++) {
+  for (int n = 0; n < b->bases; n++) {
     if (!find_base(c, b, peaks, count, &length, periods)) break;
     refine_base(b, peaks, count, periods);
     periods->due = periods->due && holds_beside(c, b, periods);
@@ -258,7 +272,8 @@ static recede_status find_by_all(rc_context *context, rc_correlation *c, int thi
   if (periods->regular || !count || peaks[0].value < REPEATS || half <= third) return RECEDE_OK;
   RC_TRY(rc_correlate(context, c, half, &peaks, &count));
   periods->clear = find_regular(c, &by_bars, peaks, count, true, false, periods);
-  periods->regular = periods->clear;
+  periods->regular =
+      periods->clear || find_regular(c, &by_cells, peaks, count, true, true, periods);
   return RECEDE_OK;
 }
 
