@@ -13,6 +13,8 @@
 #define MOST_AGAIN 1
 /* Of the angle between a line and a period that leads away from it. */
 #define LEAST_SINE .3f
+/* Periods are found at the coarsest level: here they are off by up to so many px. */
+#define OFF_PX 3
 
 typedef struct beside {
   const rc_seen *picture;
@@ -59,19 +61,22 @@ static int count_again(const beside *at, float outwards, float px, int reach_px,
 
 /* Whether a period that leads away from the line leads to one that looks the same, or out of what
  * is known. */
-static bool comes_again_by(const beside *at, rc_copy period) {
+static bool comes_again_by(const beside *at, rc_copy period, float px) {
   float length = sqrtf(period.a * period.a + period.b * period.b);
   int seen = 0;
   if (fabsf(period.a * at->along.b - period.b * at->along.a) < LEAST_SINE * length) return true;
   for (int n = 0; n < 4; n++) {
     float sign = n % 2 ? 1 : -1, outwards = n / 2 ? 1 : -1;
-    rc_copy move = {sign * period.a, sign * period.b, 0};
-    rc_profile own, other;
-    if (!profile_of(at, (rc_copy){0, 0, 0}, outwards, &own) ||
-        !profile_of(at, move, outwards, &other))
-      continue;
-    if (alike(&own, &other)) return true;
-    seen++;
+    rc_profile own;
+    if (!profile_of(at, (rc_copy){0, 0, 0}, outwards, &own)) continue;
+    for (int k = -OFF_PX; k <= OFF_PX; k++) {
+      rc_copy move = {sign * period.a - (float)k * px * at->along.b,
+                      sign * period.b + (float)k * px * at->along.a, 0};
+      rc_profile other;
+      if (!profile_of(at, move, outwards, &other)) continue;
+      if (alike(&own, &other)) return true;
+      seen++;
+    }
   }
   return !seen;
 }
@@ -87,10 +92,12 @@ bool rc_end_stands_alone(const rc_seen *picture, const rc_chart *chart, const rc
 bool rc_stands_alone(const rc_seen *picture, const rc_chart *chart, const rc_crossing *line,
                      int reach_px, const rc_copy periods[2]) {
   beside at = {picture, line, rc_chart_flat(*chart), rc_crossing_direction(chart, line)};
-  if (periods && comes_again_by(&at, periods[0]) && comes_again_by(&at, periods[1])) return false;
   float a = rc_chart_w(chart, line->ax, line->ay), b = rc_chart_w(chart, line->bx, line->by);
   int seen = 0;
   if (!(a > 0 && b > 0)) return false;
+  float px = 2 / (a + b);
+  if (periods && comes_again_by(&at, periods[0], px) && comes_again_by(&at, periods[1], px))
+    return false;
   return count_again(&at, -1, 1 / a, reach_px, &seen) <= MOST_AGAIN &&
          count_again(&at, 1, 1 / b, reach_px, &seen) <= MOST_AGAIN && seen >= reach_px;
 }
