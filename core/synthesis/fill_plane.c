@@ -143,9 +143,13 @@ static recede_status add_branches(rc_context *context, const rc_dash_rows *dashe
 static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes, rc_descent *e) {
   int from = e->params->engine_lines ? rc_lines_level(e->flags, e->level_count) : -1;
   if (from < 0) return RECEDE_OK;
+  float px = (float)(1 << (e->level_count - 1));
+  rc_copy by[2]; /* A row tells nothing of what runs along it. */
+  for (int k = 0; k < 2; k++)
+    by[k] = (rc_copy){px * e->of_all.base[k].a, px * e->of_all.base[k].b, 0};
   for (int n = from; n < e->level_count && n <= from + 1 && !e->line_count; n++)
     RC_TRY(rc_lines_find(context, &e->images[n], &e->flags[n], n, n > from, &e->chart,
-                         e->due ? e->due_by : NULL, e->lines, &e->line_count));
+                         e->due && !e->of_all.row ? by : NULL, e->lines, &e->line_count));
   rc_dash_rows_drop_lines(dashes, e->lines, &e->line_count);
   /* A rail does not come again where its sleepers do. */
   for (int i = 0; i < e->line_count; i++) e->due = e->due && !rc_crossing_is_lone(&e->lines[i]);
@@ -189,9 +193,11 @@ static recede_status find_due(rc_context *context, const rc_problem *problem, rc
   if (!params->engine_regular || !params->engine_periods ||
       params->surface == RECEDE_SURFACE_RAISED)
     return RECEDE_OK;
-  return rc_is_due(context, e->images, e->flags, e->level_count, &flat,
-                   byte_gain(&e->images[0], &problem->flags),
-                   rc_key((uint64_t)e->params->seed, 95, 0), &e->due, e->due_by);
+  RC_TRY(rc_periods_of_all(context, e->images, e->flags, e->level_count, &flat,
+                           byte_gain(&e->images[0], &problem->flags),
+                           rc_key((uint64_t)e->params->seed, 95, 0), &e->of_all));
+  e->due = e->of_all.due;
+  return RECEDE_OK;
 }
 
 /* Two textures in the hole that no line tells apart, or of which one has two edges. */

@@ -35,6 +35,8 @@
 #define FAVOUR_OF_JOINTS 1.16
 /* A grid that is beyond doubt .82 to 1.6, where the others leave a bar out. */
 #define FAVOUR_OF_CLEAR_PERIODS 1.7
+/* What repeats one way need not be followed where something fits better. */
+#define FAVOUR_OF_ROW 1.
 /* What comes from another board is not what this one shows again and again beside the hole. */
 #define FAVOUR_OF_BOARDS 1.25
 /* Moves along the rails are of so many px and more, nearest first, as many as whole.c looks at,
@@ -244,6 +246,7 @@ static recede_status try_lines(rc_context *context, rc_descent *e, const starts 
 }
 
 static double favour_of_periods(const rc_periods *periods) {
+  if (periods->row) return FAVOUR_OF_ROW;
   if (periods->clear) return FAVOUR_OF_CLEAR_PERIODS;
   return periods->by_joints ? FAVOUR_OF_JOINTS : FAVOUR_OF_PERIODS;
 }
@@ -298,10 +301,10 @@ static recede_status try_lattice(rc_context *context, rc_descent *e, int first, 
 
 /* What all sources told: those near the hole, fewer, may not. */
 static void take_due(rc_descent *e) {
-  float px = (float)(1 << (e->level_count - 1));
-  for (int k = 0; k < 2; k++)
-    e->periods.base[k] = (rc_copy){e->due_by[k].a / px, e->due_by[k].b / px, 0.f};
-  e->periods.regular = e->periods.due = true;
+  const rc_periods *all = &e->of_all;
+  for (int k = 0; k < 2; k++) e->periods.base[k] = all->base[k];
+  e->periods.regular = all->regular, e->periods.clear = all->clear, e->periods.row = all->row;
+  e->periods.due = true;
 }
 
 recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *level,
@@ -322,7 +325,7 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
     RC_TRY(rc_lattice_find(context, level, e->periods.copies, e->periods.count, &e->bends,
                            &e->lattice));
   if (regular && e->due && !e->periods.regular) take_due(e);
-  if (!regular) e->periods.regular = e->periods.due = false;
+  if (!regular) e->periods.regular = e->periods.row = e->periods.due = false;
   /* Also where traits tell what brightness did not: beside a square lies another one. */
   if (e->periods.due) rc_conditions_forget_kin(&e->conditions);
   /* Where lines cross the hole there are things that go on as a whole. But whole copies that break
@@ -330,7 +333,8 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   int with_lines = e->line_count ? half : 0, on_rails = rc_runs(&e->rails) ? half : 0;
   int rails_tried = e->rails.rows ? 2 : 1;
   int in_lattice = rc_has_lattice(&e->lattice) && !on_rails && plain > 1 ? half : 0;
-  int by_periods = e->periods.regular && !in_lattice && !on_rails && plain > 1 ? half : 0;
+  int by_periods =
+      (e->periods.regular || e->periods.row) && !in_lattice && !on_rails && plain > 1 ? half : 0;
   if (in_lattice) plain = half;
   if (on_rails && e->keep_rails) {
     bool kept;

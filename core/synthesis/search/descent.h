@@ -20,8 +20,8 @@ typedef struct rc_descent {
   rc_image images[RC_MAX_LEVELS];
   rc_mask flags[RC_MAX_LEVELS];
   rc_traits traits[RC_MAX_LEVELS];
-  bool due;                        /* as rc_is_due says, */
-  rc_copy due_by[2];               /* by these */
+  rc_periods of_all;               /* as rc_periods_of_all tells */
+  bool due;                        /* these are */
   rc_periods periods;              /* of the coarsest level */
   rc_lattice lattice;              /* px of the coarsest level */
   rc_bends bends;                  /* the lattice's */

@@ -44,6 +44,9 @@ static const bar by_bars = {8, .8f, .4f, .75f, 3.f, .65, .8, .6, false};
  * the lags looked at. In the mean .73 to .93, and beside the hole off by .2 to .54, where
  * gravel crosses roof tiles .7. */
 static const bar by_cells = {1, .7f, .6f, .4f, 3.f, .65, .65, .6, true};
+/* What repeats one way, as the stripes of a crossing do, is due as clearly, and not as near. */
+static const bar by_row = {1, .85f, .8f, 0, 0, 0, 0, .6, false};
+#define LEAST_ROW_PX 5.f
 /* Tiles that are stained, or of many colours, have nothing in common but their joints, thin lines
  * that are darker or brighter than what lies within so many px: hexagons, octagons, window panes,
  * figured tiles off by .21 to .54 between; walls in courses, setts and boards .72 to .98. Beside
@@ -127,7 +130,7 @@ static bool holds_beside(const rc_correlation *c, const bar *b, const rc_periods
     for (int x = level->box.x0 - BESIDE_PX; x < level->box.x1 + BESIDE_PX; x++) {
       if (!rc_inside(level->width, level->height, x, y)) continue;
       size_t at = (size_t)y * (size_t)level->width + (size_t)x, to;
-      for (int n = 0; n < 4 && level->room[at]; n++) {
+      for (int n = 0; n < (periods->row ? 2 : 4) && level->room[at]; n++) {
         float sign = n % 2 ? 1.f : -1.f;
         rc_copy move = {sign * periods->base[n / 2].a, sign * periods->base[n / 2].b, 0.f};
         rc_place place = rc_copy_place(&c->flat, move, rc_level_x(level, x), rc_level_y(level, y));
@@ -232,6 +235,23 @@ static bool find_regular(const rc_correlation *c, const bar *b, const rc_peak *p
   return false;
 }
 
+/* The shortest period of what repeats clearly, one way. */
+static bool find_row(const rc_correlation *c, const rc_peak *peaks, int count,
+                     rc_periods *periods) {
+  float shortest = INFINITY;
+  periods->row = true;
+  periods->base[1] = (rc_copy){0, 0, 0};
+  for (int i = 0; i < count; i++) {
+    const rc_peak *p = &peaks[i];
+    float px = sqrtf(p->x * p->x + p->y * p->y);
+    if (!is_regular(&by_row, p) || px >= shortest || px < LEAST_ROW_PX) continue;
+    shortest = px;
+    periods->base[0] = (rc_copy){p->x, p->y, 0};
+  }
+  periods->due = shortest < INFINITY && holds_beside(c, &by_row, periods);
+  return periods->due;
+}
+
 static void take_peaks(const rc_peak *peaks, int count, rc_periods *periods) {
   for (int i = 0; i < count; i++)
     periods->repeats =
@@ -259,17 +279,20 @@ static recede_status find_by_joints(rc_context *context, rc_correlation *c, int 
   return RECEDE_OK;
 }
 
-/* By all that the pixels show. */
+/* By all that the pixels show. *row: where nothing is regular there may be a row. */
 static recede_status find_by_all(rc_context *context, rc_correlation *c, int third, int half,
-                                 rc_periods *periods) {
+                                 rc_periods *periods, rc_periods *row) {
   rc_peak *peaks;
   int count;
   RC_TRY(rc_correlate(context, c, third, &peaks, &count));
   take_peaks(peaks, count, periods);
+  *row = *periods;
   periods->clear = find_regular(c, &by_bars, peaks, count, true, false, periods);
   periods->regular =
       periods->clear || find_regular(c, &by_all, peaks, count, false, false, periods);
-  if (periods->regular || !count || peaks[0].value < REPEATS || half <= third) return RECEDE_OK;
+  if (periods->regular) return RECEDE_OK;
+  row->row = find_row(c, peaks, count, row);
+  if (!count || peaks[0].value < REPEATS || half <= third) return RECEDE_OK;
   RC_TRY(rc_correlate(context, c, half, &peaks, &count));
   periods->clear = find_regular(c, &by_bars, peaks, count, true, false, periods);
   periods->regular =
@@ -284,6 +307,7 @@ recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64
   int third = shorter / 3 < MOST_LAG_PX ? shorter / 3 : MOST_LAG_PX;
   int half = shorter / 2 < MOST_LAG_PX ? shorter / 2 : MOST_LAG_PX;
   rc_correlation c;
+  rc_periods row;
   float *trait;
   *periods = (rc_periods){.count = 0};
   if (rc_level_all_sources(level).end < LEAST_SOURCES * count || third < LEAST_THIRD_PX)
@@ -292,8 +316,9 @@ recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64
   RC_TRY(RC_NEW(context, pixels, &trait));
   for (size_t i = 0; i < pixels; i++) trait[i] = rc_level_trait(level, (int)i);
   RC_TRY(rc_correlation_new(context, level, trait, key, count, &c));
-  RC_TRY(find_by_all(context, &c, third, half, periods));
+  RC_TRY(find_by_all(context, &c, third, half, periods, &row));
   if (!periods->regular && joints) RC_TRY(find_by_joints(context, &c, third, periods));
+  if (!periods->regular && row.row) *periods = row;
   rc_release(context, mark);
   return RECEDE_OK;
 }

@@ -19,6 +19,7 @@ typedef struct rc_periods {
   bool regular;    /* all there is comes again both ways, by these two: */
   rc_copy base[2]; /* short, and far from parallel */
   bool by_joints;  /* and nothing but its joints does */
+  bool row;        /* it comes again one way, by base[0]; base[1] is 0 */
   bool clear;      /* or it is beyond doubt: all correlates wherever they lead */
   bool due;        /* it is larger than a patch, and does so beside the hole */
 } rc_periods;

@@ -12,31 +12,27 @@
 #define REACH_BY 1.05f
 #define WIDEST 2.f
 
-recede_status rc_is_due(rc_context *context, const rc_image *images, const rc_mask *flags,
-                        int levels, const rc_chart *chart, float gain, uint64_t key, bool *due,
-                        rc_copy by[2]) {
+recede_status rc_periods_of_all(rc_context *context, const rc_image *images, const rc_mask *flags,
+                                int levels, const rc_chart *chart, float gain, uint64_t key,
+                                rc_periods *periods) {
   rc_chart coarse = rc_chart_coarser(*chart, levels - 1);
   rc_traits none = {0};
-  rc_periods periods;
   rc_level level;
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_level_new(context, &flags[levels - 1], &coarse, &level));
   level.sides.px = 1;
   RC_TRY(rc_level_see(context, &images[levels - 1], &none, 1.f, gain, true, &level));
-  RC_TRY(rc_find_periods(context, &level, key, RC_REGULAR_POINTS, false, &periods));
-  *due = periods.due;
-  for (int k = 0; k < 2; k++) {
-    float px = (float)(1 << (levels - 1));
-    by[k] = (rc_copy){px * periods.base[k].a, px * periods.base[k].b, 0.f};
-  }
+  RC_TRY(rc_find_periods(context, &level, key, RC_REGULAR_POINTS, false, periods));
   rc_release(context, mark);
   return rc_poll(context);
 }
 
-/* The n-th of SIDE * SIDE, the middle one of which moves nothing. */
+/* The n-th of SIDE * SIDE, the middle one of which moves nothing; of a row the nearest, which are
+ * so many each way. */
 static rc_copy move_by(const rc_periods *periods, int n) {
   float i = (float)(n % SIDE - MOST_TIMES), j = (float)(n / SIDE - MOST_TIMES);
   const rc_copy *base = periods->base;
+  if (periods->row) i = (float)(n - SIDE * SIDE / 2), j = 0;
   return (rc_copy){i * base[0].a + j * base[1].a, i * base[0].b + j * base[1].b, 0.f};
 }
 

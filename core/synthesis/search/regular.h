@@ -6,11 +6,11 @@
 
 #include "synthesis/search/periods.h"
 
-/* As rc_find_periods says of the coarsest level's sources. images and flags: the pyramid's levels,
- * finest first; chart: the finest level's, in whose px by is; gain: byte = value * gain + 128. */
-recede_status rc_is_due(rc_context *context, const rc_image *images, const rc_mask *flags,
-                        int levels, const rc_chart *chart, float gain, uint64_t key, bool *due,
-                        rc_copy by[2]);
+/* What rc_find_periods tells of the coarsest level's sources, in its px. images and flags: the
+ * pyramid's levels, finest first; chart: the finest level's; gain: byte = value * gain + 128. */
+recede_status rc_periods_of_all(rc_context *context, const rc_image *images, const rc_mask *flags,
+                                int levels, const rc_chart *chart, float gain, uint64_t key,
+                                rc_periods *periods);
 /* Widens the ranges of scale until they hold, of each target pixel, the source nearest in scale
  * that lies up to four whole periods away. */
 void rc_reach_periods(rc_level *level, const rc_periods *periods);
