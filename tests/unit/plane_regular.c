@@ -39,6 +39,29 @@ static double slabs(double u, double v, int k) {
          2 * stains(u, v, 1.5, 14);
 }
 
+/* Dark bars around panes, each of its own shade, stained; a plate lies somewhere on each. */
+static double barred(double u, double v, double side, int k) {
+  double row = floor(v / side), column = floor(u / side);
+  double in_u = u - side * column, in_v = v - side * row, bar = .18 * side;
+  double pane = .55 + .25 * noise_at((int)row, (int)column, 15) + .02 * k;
+  double plate_u = bar + .5 * side * noise_at((int)row, (int)column, 16);
+  double plate_v = bar + .5 * side * noise_at((int)row, (int)column, 17);
+  if (in_u < bar || in_v < bar) return .12 + stains(u, v, .7, 18);
+  if (in_u > plate_u && in_u < plate_u + .2 * side && in_v > plate_v && in_v < plate_v + .15 * side)
+    return pane - .2;
+  return pane + stains(u, v, 2, 19);
+}
+static double bars(double u, double v, int k) { return barred(u + 2, v + 1, 7.5, k); }
+/* Of these the picture shows two or three each way. */
+static double large_bars(double u, double v, int k) { return barred(u + 2, v + 1, 11.5, k); }
+
+/* Bright stripes of a crossing, 2.4 texels of 4.8, up to where they end; on asphalt. */
+static double stripes(double u, double v, int k) {
+  double across = u / 4.8 - floor(u / 4.8);
+  if (across < .5 && v < 1.5 && v > -9) return .85 + stains(u, v, 3, 20);
+  return .25 + .02 * k + stains(u, v, 3, 21) + stains(u, v, .8, 22);
+}
+
 typedef struct scene {
   pattern *draw;
   double slant_deg, tilt_deg;
@@ -131,10 +154,41 @@ static void slabs_go_on(void) {
   g_assert_cmpfloat(sum, >, .81);
 }
 
+static double mean_right_of(const scene *scenes, guint count) {
+  double sum = 0;
+  for (guint i = 0; i < count; i++) sum += right_of(&scenes[i]) / count;
+  g_test_message("together %.3f", sum);
+  return sum;
+}
+
+static void bars_go_on(void) {
+  static const scene scenes[] = {
+      {bars, 0, 0, {250, 160, 390, 280}},          {bars, 40, 90, {240, 180, 380, 320}},
+      {bars, 50, -15, {200, 200, 370, 330}},       {bars, 55, 40, {240, 200, 400, 330}},
+      {large_bars, 0, 0, {230, 160, 390, 300}},    {large_bars, 30, 20, {220, 160, 390, 310}},
+      {large_bars, 40, -60, {240, 150, 400, 300}},
+  };
+  /* .92 where a bar ends or a pane has one too many. */
+  g_assert_cmpfloat(mean_right_of(scenes, G_N_ELEMENTS(scenes)), >, .955);
+}
+
+static void stripes_go_on(void) {
+  static const scene scenes[] = {
+      {stripes, 40, 0, {280, 150, 420, 260}},
+      {stripes, 55, 10, {330, 180, 640, 280}},
+      {stripes, 50, -20, {480, 150, 640, 270}},
+      {stripes, 60, 0, {500, 180, 640, 300}},
+  };
+  /* .96 where they end early. */
+  g_assert_cmpfloat(mean_right_of(scenes, G_N_ELEMENTS(scenes)), >, .98);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/regular/squares", squares_go_on);
   g_test_add_func("/regular/windows", windows_go_on);
   g_test_add_func("/regular/slabs", slabs_go_on);
+  g_test_add_func("/regular/bars", bars_go_on);
+  g_test_add_func("/regular/stripes", stripes_go_on);
   return g_test_run();
 }
