@@ -25,6 +25,11 @@
 /* Near-ties: on flat textures of slant >= 12 the flat model was always ahead by 3.5 % or more, on a
  * pebble beach the raised one by about nothing, and right. */
 #define RAISED_FAVOUR 1.02
+/* Where all starts of one model lead to one plane, what the other reads must not explain less by so
+ * much, however likely: drawn lawns and rocks 1.07 to 1.17, read as chance floors; pebble beaches,
+ * which are raised floors, at most 1.03. */
+#define AGREED_DEG 10
+#define MOST_OF_AGREED 1.05
 /* Long straight lines lie flat. */
 #define RAISED_LINES_COST .1
 /* Weight of a cell by its distance from the point that is meant: 1 / (1 + (d / reach)^2), never
@@ -242,14 +247,27 @@ static void take_starts(rc_point coarse[COARSE]) {
   coarse[likely] = last;
 }
 
+/* The least cost of a model all whose starts lead to one plane. */
+static double cost_agreed_on(const search *s, int model) {
+  const rc_point *p = s->closer[model];
+  int best = 0;
+  for (int i = 1; i < STARTS; i++)
+    if (p[i].cost < p[best].cost) best = i;
+  for (int i = 0; i < STARTS; i++)
+    if (rc_lean_degrees(lean_of(&p[best]), lean_of(&p[i])) > AGREED_DEG) return INFINITY;
+  return p[best].cost;
+}
+
 /* The reading of least cost of those that explain more than the frontal plane does, with a little
  * favour for raised textures and more against raised textures of straight lines. */
 static void choose(search *s, double frontal) {
   double least = INFINITY, lines = fmax(s->points[0].support, s->points[1].support);
   s->best = (rc_point){0, 0, frontal};
-  for (int m = 0; m < MODELS; m++)
+  for (int m = 0; m < MODELS; m++) {
+    double agreed = cost_agreed_on(s, MODELS - 1 - m);
     for (int i = 0; i < STARTS; i++) {
       const rc_point *p = &s->closer[m][i];
+      if (p->cost > MOST_OF_AGREED * agreed) continue;
       double cost = cost_among_readings(p);
       if (m == RAISED) cost *= lines > 0 ? 1 + RAISED_LINES_COST * lines : 1 / RAISED_FAVOUR;
       if (cost >= least || p->cost > (1 - LEAST_GAIN) * frontal) continue;
@@ -257,6 +275,7 @@ static void choose(search *s, double frontal) {
       s->best_model = m;
       s->best = *p;
     }
+  }
 }
 
 /* Looks for lines; a point's support becomes how far it counts. */
