@@ -247,7 +247,7 @@ static void take_starts(rc_point coarse[COARSE]) {
   coarse[likely] = last;
 }
 
-/* The least cost of a model all whose starts lead to one plane. */
+/* The least cost of a model all whose starts lead to one plane; of a ceiling more. */
 static double cost_agreed_on(const search *s, int model) {
   const rc_point *p = s->closer[model];
   int best = 0;
@@ -255,7 +255,7 @@ static double cost_agreed_on(const search *s, int model) {
     if (p[i].cost < p[best].cost) best = i;
   for (int i = 0; i < STARTS; i++)
     if (rc_lean_degrees(lean_of(&p[best]), lean_of(&p[i])) > AGREED_DEG) return INFINITY;
-  return p[best].cost;
+  return p[best].cost * fmax(1, times_unlikely(&p[best]));
 }
 
 /* The reading of least cost of those that explain more than the frontal plane does, with a little
