@@ -23,7 +23,7 @@
 /* Where all starts of one model lead to one plane, what the other reads must not explain less by so
  * much, however likely: drawn lawns and rocks 1.07 to 1.17, read as chance floors; pebble beaches,
  * which are raised floors, at most 1.03. */
-#define AGREED_DEG 10
+#define AGREED_DEG 15
 #define MOST_OF_AGREED 1.05
 /* Long straight lines lie flat. */
 #define RAISED_LINES_COST .1
@@ -226,12 +226,14 @@ static void choose(search *s, double frontal) {
 static recede_status find_points(rc_context *context, search *s, const rc_image *image,
                                  const rc_mask *flags, const double on[2]) {
   int count;
-  RC_TRY(rc_vanishing_find(context, image, flags, s->r.model[RC_FLAT].focal_px, on, s->r.points, &count));
+  RC_TRY(rc_vanishing_find(context, image, flags, s->r.model[RC_FLAT].focal_px, on, s->r.points,
+                           &count));
   for (int i = 0; i < RC_VANISHING_POINTS; i++) {
     double counts = (s->r.points[i].support - LEAST_SUPPORT) / (FULL_SUPPORT - LEAST_SUPPORT);
     s->r.points[i].support = i < count ? fmin(1, fmax(0, counts)) : 0;
   }
-  if (fabs(s->r.points[0].direction[2]) < FAR_POINT && fabs(s->r.points[1].direction[2]) < FAR_POINT)
+  if (fabs(s->r.points[0].direction[2]) < FAR_POINT &&
+      fabs(s->r.points[1].direction[2]) < FAR_POINT)
     s->r.points[1].support = 0;
   return RECEDE_OK;
 }
@@ -265,7 +267,8 @@ recede_status rc_estimate_plane(rc_context *context, const rc_image *image, cons
   rc_lean lean = rc_lean_of(&s->r.best);
   *confidence = rc_trust(&s->r);
   if (on && !s->r.model[RC_FLAT].chosen) /* else all of it is said to lie on the plane */
-    RC_TRY(rc_nearby_correct(context, &s->r.model[RC_FLAT], s->r.best_model == RC_RAISED, &lean, confidence));
+    RC_TRY(rc_nearby_correct(context, &s->r.model[RC_FLAT], s->r.best_model == RC_RAISED, &lean,
+                             confidence));
   rc_lean_normal(lean, plane->normal);
   rc_release(context, mark);
   return RECEDE_OK;

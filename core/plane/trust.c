@@ -110,4 +110,3 @@ double rc_trust(const rc_readings *s) {
       LEVEL_TRUST * rc_lean_level(rc_lean_of(&s->best)) * level_share * fmin(1, told / LEAST_TOLD);
   return 1 - (1 - told) * (1 - trust);
 }
-

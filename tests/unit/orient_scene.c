@@ -44,11 +44,29 @@ static double pier(double u, double v) {
   return board < .12 ? .1 : .3 + .06 * chance((int)floor(u / 40), (int)floor(v), 9);
 }
 
+/* Smooth between places side texels apart. */
+static double smooth(double u, double v, double side, int n) {
+  double x = u / side, y = v / side, a = x - floor(x), b = y - floor(y);
+  int i = (int)floor(x), j = (int)floor(y);
+  a = a * a * (3 - 2 * a), b = b * b * (3 - 2 * b);
+  double upper = (1 - a) * chance(i, j, n) + a * chance(i + 1, j, n);
+  double lower = (1 - a) * chance(i, j + 1, n) + a * chance(i + 1, j + 1, n);
+  return (1 - b) * upper + b * lower;
+}
+
+/* Tufts, and blades in them. */
+static double lawn(double u, double v) {
+  double sum = .5;
+  for (int k = 0; k < 5; k++) sum += .4 * (smooth(u, v, 24. / (1 << k), 30 + k) - .5);
+  return fmin(fmax(sum, 0), 1);
+}
+
 static double texture(texture_kind kind, double u, double v) {
   switch (kind) {
     case BRICKS: return bricks(u, v);
     case DOTS: return dots(u, v);
     case PIER: return pier(u, v);
+    case LAWN: return lawn(u, v);
     default: return chance((int)floor(u / 2), (int)floor(v / 2), 6);
   }
 }

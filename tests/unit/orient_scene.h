@@ -10,7 +10,7 @@
 #define FLOOR_SLANT 80
 #define WALL_SLANT 65
 
-typedef enum { BRICKS, DOTS, NOISE, PIER } texture_kind;
+typedef enum { BRICKS, DOTS, NOISE, PIER, LAWN } texture_kind;
 
 /* A repeatable number in 0..1 for a place. */
 double chance(int x, int y, int n);
