@@ -118,7 +118,7 @@ static const recede_param_info table[] = {
     STAGE("engine-lattice", engine_lattice,
           "copy what repeats both ways by whole periods, bent as it lies"),
     STAGE("engine-regular", engine_regular,
-          "of what comes again both ways copy anything by whole periods"),
+          "of what comes again both ways, or in a row, copy anything by whole periods"),
     STAGE("engine-joints", engine_joints, "and what does so by its joints alone"),
     STAGE("engine-lines", engine_lines, "continue straight lines that cross the hole"),
     STAGE("engine-branches", engine_branches,

@@ -191,6 +191,12 @@ static void take_starts(rc_point coarse[COARSE]) {
   coarse[likely] = last;
 }
 
+/* What a raised texture costs more where there are straight lines. */
+static double times_for_lines(const search *s, int model) {
+  double lines = fmax(s->r.points[0].support, s->r.points[1].support);
+  return model == RC_RAISED ? 1 + RAISED_LINES_COST * lines : 1;
+}
+
 /* The least cost of a model all whose starts lead to one plane; of a ceiling more. */
 static double cost_agreed_on(const search *s, int model) {
   const rc_point *p = s->r.closer[model];
@@ -199,22 +205,23 @@ static double cost_agreed_on(const search *s, int model) {
     if (p[i].cost < p[best].cost) best = i;
   for (int i = 0; i < RC_STARTS; i++)
     if (rc_lean_degrees(rc_lean_of(&p[best]), rc_lean_of(&p[i])) > AGREED_DEG) return INFINITY;
-  return p[best].cost * fmax(1, rc_times_unlikely(&p[best]));
+  return p[best].cost * times_for_lines(s, model) * fmax(1, rc_times_unlikely(&p[best]));
 }
 
 /* The reading of least cost of those that explain more than the frontal plane does, with a little
  * favour for raised textures and more against raised textures of straight lines. */
 static void choose(search *s, double frontal) {
-  double least = INFINITY, lines = fmax(s->r.points[0].support, s->r.points[1].support);
+  double least = INFINITY;
   s->r.best = (rc_point){0, 0, frontal};
   for (int m = 0; m < RC_MODELS; m++) {
-    double agreed = cost_agreed_on(s, RC_MODELS - 1 - m);
+    double agreed = cost_agreed_on(s, RC_MODELS - 1 - m), lines = times_for_lines(s, m);
     for (int i = 0; i < RC_STARTS; i++) {
       const rc_point *p = &s->r.closer[m][i];
-      if (p->cost > MOST_OF_AGREED * agreed) continue;
-      double cost = cost_among_readings(p);
-      if (m == RC_RAISED) cost *= lines > 0 ? 1 + RAISED_LINES_COST * lines : 1 / RAISED_FAVOUR;
-      if (cost >= least || p->cost > (1 - LEAST_GAIN) * frontal) continue;
+      double cost = cost_among_readings(p) * lines;
+      if (m == RC_RAISED && lines == 1) cost /= RAISED_FAVOUR;
+      if (cost >= least || p->cost > (1 - LEAST_GAIN) * frontal ||
+          p->cost * lines > MOST_OF_AGREED * agreed)
+        continue;
       least = cost;
       s->r.best_model = m;
       s->r.best = *p;

@@ -20,7 +20,7 @@ typedef struct rc_readings {
   rc_homogeneity model[RC_MODELS];
   rc_vanishing points[RC_VANISHING_POINTS]; /* support: 0..1, how far it counts */
   float *weight;                            /* of each cell */
-  float *scratch;                           /* one a thread */
+  float *scratch; /* one a thread: rc_homogeneity_cost's, then a float for each cell */
   rc_point closer[RC_MODELS][RC_STARTS], part[RC_PARTS];
   int best_model;
   rc_point best;

@@ -121,6 +121,13 @@ static void go_on(const scene *scenes, int count) {
   for (int i = 0; i < count; i++) g_assert_cmpfloat(right_of(&scenes[i]), >, .95);
 }
 
+static double mean_of(const scene *scenes, guint count, double (*of)(const scene *s)) {
+  double sum = 0;
+  for (guint i = 0; i < count; i++) sum += of(&scenes[i]) / count;
+  g_test_message("together %.3f", sum);
+  return sum;
+}
+
 static void squares_go_on(void) {
   static const scene scenes[] = {
       {squares, 60, -8, {280, 240, 450, 360}},
@@ -147,18 +154,7 @@ static void slabs_go_on(void) {
       {slabs, 55, -20, {260, 210, 420, 330}},  {slabs, 50, -15, {200, 240, 370, 360}},
       {slabs, 30, -100, {240, 160, 400, 300}}, {slabs, 60, 30, {280, 220, 430, 340}},
   };
-  double sum = 0;
-  for (guint i = 0; i < G_N_ELEMENTS(scenes); i++)
-    sum += joints_of(&scenes[i]) / G_N_ELEMENTS(scenes);
-  g_test_message("together %.3f", sum);
-  g_assert_cmpfloat(sum, >, .81);
-}
-
-static double mean_right_of(const scene *scenes, guint count) {
-  double sum = 0;
-  for (guint i = 0; i < count; i++) sum += right_of(&scenes[i]) / count;
-  g_test_message("together %.3f", sum);
-  return sum;
+  g_assert_cmpfloat(mean_of(scenes, G_N_ELEMENTS(scenes), joints_of), >, .81);
 }
 
 static void bars_go_on(void) {
@@ -169,7 +165,7 @@ static void bars_go_on(void) {
       {large_bars, 40, -60, {240, 150, 400, 300}},
   };
   /* .92 where a bar ends or a pane has one too many. */
-  g_assert_cmpfloat(mean_right_of(scenes, G_N_ELEMENTS(scenes)), >, .955);
+  g_assert_cmpfloat(mean_of(scenes, G_N_ELEMENTS(scenes), right_of), >, .955);
 }
 
 static void stripes_go_on(void) {
@@ -180,7 +176,7 @@ static void stripes_go_on(void) {
       {stripes, 60, 0, {500, 180, 640, 300}},
   };
   /* .96 where they end early. */
-  g_assert_cmpfloat(mean_right_of(scenes, G_N_ELEMENTS(scenes)), >, .98);
+  g_assert_cmpfloat(mean_of(scenes, G_N_ELEMENTS(scenes), right_of), >, .98);
 }
 
 int main(int argc, char **argv) {

@@ -29,14 +29,13 @@
  * .6 to 1.4, roof tiles that are all alike 1.6 and more: they keep in order by themselves. */
 #define FAVOUR_OF_LATTICE 1.3
 /* What is regular costs .56 to 1.17 of what others do that go on with the wrong square or window;
- * roof tiles whose other starts are good as they are 1.26 and more. */
+ * roof tiles whose other starts are good as they are 1.26 and more. Stripes 1 to 1.2, where the
+ * others end them early. */
 #define FAVOUR_OF_PERIODS 1.22
 /* And what is so by its joints alone .68 to 1.15, pavers whose other starts are good 1.17. */
 #define FAVOUR_OF_JOINTS 1.16
 /* A grid that is beyond doubt .82 to 1.6, where the others leave a bar out. */
 #define FAVOUR_OF_CLEAR_PERIODS 1.7
-/* What repeats one way need not be followed where something fits better. */
-#define FAVOUR_OF_ROW 1.
 /* What comes from another board is not what this one shows again and again beside the hole. */
 #define FAVOUR_OF_BOARDS 1.25
 /* Moves along the rails are of so many px and more, nearest first, as many as whole.c looks at,
@@ -246,13 +245,12 @@ static recede_status try_lines(rc_context *context, rc_descent *e, const starts 
 }
 
 static double favour_of_periods(const rc_periods *periods) {
-  if (periods->row) return FAVOUR_OF_ROW;
   if (periods->clear) return FAVOUR_OF_CLEAR_PERIODS;
   return periods->by_joints ? FAVOUR_OF_JOINTS : FAVOUR_OF_PERIODS;
 }
 
-/* Starts of whole copies by the periods of what is regular, which lies flat. The level then holds
- * the best of these and those before, *best. */
+/* Starts of whole copies by the periods of what is regular, or a row, which lies flat. The level
+ * then holds the best of these and those before, *best. */
 static recede_status try_periods(rc_context *context, rc_descent *e, int first, int count,
                                  rc_pace *p, rc_level *level, rc_workspace *scratch, rc_trial *best,
                                  double *misfit) {
@@ -304,7 +302,7 @@ static void take_due(rc_descent *e) {
   const rc_periods *all = &e->of_all;
   for (int k = 0; k < 2; k++) e->periods.base[k] = all->base[k];
   e->periods.regular = all->regular, e->periods.clear = all->clear, e->periods.row = all->row;
-  e->periods.due = true;
+  e->periods.repeats = e->periods.repeats || all->repeats, e->periods.due = true;
 }
 
 recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *level,
@@ -318,14 +316,14 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   /* What stands alone comes again in no lattice. */
   bool lone = e->line_count && rc_crossing_is_lone(&e->lines[0]);
   bool regular = e->params->engine_regular && e->params->surface != RECEDE_SURFACE_RAISED && !lone;
-  bool joints = e->params->engine_joints && regular && !rc_runs(&e->rails);
+  bool told = e->due && e->of_all.regular; /* by more than joints */
+  bool joints = e->params->engine_joints && !told && !rc_runs(&e->rails);
   if (e->params->engine_periods)
-    RC_TRY(rc_find_periods(context, level, key, RC_PERIOD_POINTS, joints, &e->periods));
+    RC_TRY(rc_find_periods(context, level, key, RC_PERIOD_POINTS, regular, joints, &e->periods));
   if (e->params->engine_lattice && !lone)
     RC_TRY(rc_lattice_find(context, level, e->periods.copies, e->periods.count, &e->bends,
                            &e->lattice));
-  if (regular && e->due && !e->periods.regular) take_due(e);
-  if (!regular) e->periods.regular = e->periods.row = e->periods.due = false;
+  if (regular && e->due && !e->periods.regular && !(e->periods.row && e->of_all.row)) take_due(e);
   /* Also where traits tell what brightness did not: beside a square lies another one. */
   if (e->periods.due) rc_conditions_forget_kin(&e->conditions);
   /* Where lines cross the hole there are things that go on as a whole. But whole copies that break

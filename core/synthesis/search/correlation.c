@@ -35,11 +35,8 @@ static void correlate_lag(const rc_correlation *c, int dx, int dy, float *value)
   for (int i = 0; i < c->count; i++) {
     int x = c->points[i] % level->width, y = c->points[i] / level->width;
     rc_place place = rc_copy_place(&c->flat, copy, rc_level_x(level, x), rc_level_y(level, y));
-    float sx = place.x + c->flat.x0 + .5f, sy = place.y + c->flat.y0 + .5f;
-    if (place.beyond || !(place.ratio > .5f && place.ratio < 2.f)) continue;
-    if (!(sx >= 0.f && sy >= 0.f && sx < (float)level->width && sy < (float)level->height))
-      continue;
-    size_t at = (size_t)(int)sy * (size_t)level->width + (size_t)(int)sx;
+    size_t at;
+    if (!(place.ratio > .5f && place.ratio < 2.f) || !rc_place_at(level, &place, &at)) continue;
     if (!level->room[at]) continue;
     add_pair(&s, (double)c->trait[c->points[i]], (double)c->trait[at]);
   }
@@ -56,7 +53,7 @@ static void correlate_row(void *user, int dy, int thread) {
 
 float rc_correlation_at(const rc_correlation *c, int dx, int dy) {
   if (dy < 0) dx = -dx, dy = -dy; /* the correlation is the same both ways */
-  if (abs(dx) > c->lag || dy > c->lag) return 0.f;
+  if (abs(dx) > c->lag || dy > c->lag) return RC_NOT_KNOWN;
   return c->value[(size_t)dy * (size_t)(2 * c->lag + 1) + (size_t)(dx + c->lag)];
 }
 

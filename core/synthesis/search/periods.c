@@ -31,7 +31,7 @@ typedef struct bar {
   double most_off;    /* half a period off, of that mean */
   double most_beside; /* what lies beside the hole is off from its place in this, squared, of what
                          all vary by */
-  bool alone;         /* where no third one is seen two are enough */
+  bool unseen;        /* two are enough where a third one can not be seen */
 } bar;
 /* Drawn chess boards, hexagons, pavers, parquet and facades correlate by .6 to .98, and rise by .75
  * to 1.1. Dunes have .9 and 1, but one way. Beside the hole they are off by .1 to 1, bare ground
@@ -39,7 +39,7 @@ typedef struct bar {
 static const bar by_all = {1, .6f, .75f, .4f, 0, 0, 0, 1.2, false};
 /* A grid of bars rises less on the way along them, and is only .16 to .77 off between, but it
  * correlates by .82 to .98 wherever its periods lead. */
-static const bar by_bars = {8, .8f, .4f, .75f, 3.f, .65, .8, .6, false};
+static const bar by_bars = {8, .8f, .4f, .75f, 3.f, .65, .8, 1.2, false};
 /* Cells of which the picture shows two or three each way: what would confirm them may lie beyond
  * the lags looked at. In the mean .73 to .93, and beside the hole off by .2 to .54, where
  * gravel crosses roof tiles .7. */
@@ -49,7 +49,7 @@ static const bar by_row = {1, .85f, .8f, 0, 0, 0, 0, .6, false};
 #define LEAST_ROW_PX 5.f
 /* Tiles that are stained, or of many colours, have nothing in common but their joints, thin lines
  * that are darker or brighter than what lies within so many px: hexagons, octagons, window panes,
- * figured tiles off by .21 to .54 between; walls in courses, setts and boards .72 to .98. Beside
+ * figured tiles off by up to .54 between; walls in courses, setts and boards .72 to .98. Beside
  * the hole .4 to 1.4, heaps in rows with bare ground around it 1.7 and more. Cells: 10 to 39; the
  * grain of a table .6, drapery 4. */
 #define JOINTS_WITHIN_PX 3
@@ -87,7 +87,7 @@ static bool is_seen(const rc_correlation *c, float x, float y) {
 /* Two peaks come by chance, but what they span has more: at their sum or difference. */
 static bool is_confirmed(const rc_correlation *c, const bar *b, const rc_peak *peaks, int count,
                          const rc_peak *p, const rc_peak *q) {
-  if (b->alone && !is_seen(c, p->x + q->x, p->y + q->y) && !is_seen(c, p->x - q->x, p->y - q->y))
+  if (b->unseen && !is_seen(c, p->x + q->x, p->y + q->y) && !is_seen(c, p->x - q->x, p->y - q->y))
     return true;
   for (int n = 0; n < 4 * count; n++) {
     const rc_peak *at = &peaks[n / 4];
@@ -235,12 +235,24 @@ static bool find_regular(const rc_correlation *c, const bar *b, const rc_peak *p
   return false;
 }
 
-/* The shortest period of what repeats clearly, one way. */
-static bool find_row(const rc_correlation *c, const rc_peak *peaks, int count,
+/* By all peaks that are near whole multiples of it. */
+static void refine_row(const rc_peak *peaks, int count, rc_copy *row) {
+  double square = (double)row->a * row->a + (double)row->b * row->b, kk = 0, kx = 0, ky = 0;
+  for (int n = 0; n < count; n++) {
+    const rc_peak *at = &peaks[n];
+    double k = rc_round((float)((at->x * row->a + at->y * row->b) / square));
+    if (!is_regular(&by_row, at) || fabs(at->x - k * row->a) > MOST_OFF_PX ||
+        fabs(at->y - k * row->b) > MOST_OFF_PX)
+      continue;
+    kk += k * k, kx += k * at->x, ky += k * at->y;
+  }
+  *row = (rc_copy){(float)(kx / kk), (float)(ky / kk), 0}; /* it is one of them */
+}
+
+/* The shortest period of what repeats clearly, one way; if there is one it is due. */
+static void find_row(const rc_correlation *c, const rc_peak *peaks, int count,
                      rc_periods *periods) {
   float shortest = INFINITY;
-  periods->row = true;
-  periods->base[1] = (rc_copy){0, 0, 0};
   for (int i = 0; i < count; i++) {
     const rc_peak *p = &peaks[i];
     float px = sqrtf(p->x * p->x + p->y * p->y);
@@ -248,8 +260,10 @@ static bool find_row(const rc_correlation *c, const rc_peak *peaks, int count,
     shortest = px;
     periods->base[0] = (rc_copy){p->x, p->y, 0};
   }
-  periods->due = shortest < INFINITY && holds_beside(c, &by_row, periods);
-  return periods->due;
+  if (shortest == INFINITY) return;
+  refine_row(peaks, count, &periods->base[0]);
+  periods->row = true; /* as holds_beside asks */
+  periods->row = periods->due = holds_beside(c, &by_row, periods);
 }
 
 static void take_peaks(const rc_peak *peaks, int count, rc_periods *periods) {
@@ -281,17 +295,18 @@ static recede_status find_by_joints(rc_context *context, rc_correlation *c, int 
 
 /* By all that the pixels show. *row: where nothing is regular there may be a row. */
 static recede_status find_by_all(rc_context *context, rc_correlation *c, int third, int half,
-                                 rc_periods *periods, rc_periods *row) {
+                                 bool regular, rc_periods *periods, rc_periods *row) {
   rc_peak *peaks;
   int count;
   RC_TRY(rc_correlate(context, c, third, &peaks, &count));
   take_peaks(peaks, count, periods);
   *row = *periods;
+  if (!regular) return RECEDE_OK;
   periods->clear = find_regular(c, &by_bars, peaks, count, true, false, periods);
   periods->regular =
       periods->clear || find_regular(c, &by_all, peaks, count, false, false, periods);
   if (periods->regular) return RECEDE_OK;
-  row->row = find_row(c, peaks, count, row);
+  find_row(c, peaks, count, row);
   if (!count || peaks[0].value < REPEATS || half <= third) return RECEDE_OK;
   RC_TRY(rc_correlate(context, c, half, &peaks, &count));
   periods->clear = find_regular(c, &by_bars, peaks, count, true, false, periods);
@@ -301,7 +316,7 @@ static recede_status find_by_all(rc_context *context, rc_correlation *c, int thi
 }
 
 recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key, int count,
-                              bool joints, rc_periods *periods) {
+                              bool regular, bool joints, rc_periods *periods) {
   size_t pixels = (size_t)level->width * (size_t)level->height;
   int shorter = level->width < level->height ? level->width : level->height;
   int third = shorter / 3 < MOST_LAG_PX ? shorter / 3 : MOST_LAG_PX;
@@ -316,8 +331,8 @@ recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64
   RC_TRY(RC_NEW(context, pixels, &trait));
   for (size_t i = 0; i < pixels; i++) trait[i] = rc_level_trait(level, (int)i);
   RC_TRY(rc_correlation_new(context, level, trait, key, count, &c));
-  RC_TRY(find_by_all(context, &c, third, half, periods, &row));
-  if (!periods->regular && joints) RC_TRY(find_by_joints(context, &c, third, periods));
+  RC_TRY(find_by_all(context, &c, third, half, regular, periods, &row));
+  if (!periods->regular && regular && joints) RC_TRY(find_by_joints(context, &c, third, periods));
   if (!periods->regular && row.row) *periods = row;
   rc_release(context, mark);
   return RECEDE_OK;

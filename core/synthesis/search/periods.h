@@ -18,15 +18,16 @@ typedef struct rc_periods {
   bool repeats;    /* the same piece twice is natural, or not seen */
   bool regular;    /* all there is comes again both ways, by these two: */
   rc_copy base[2]; /* short, and far from parallel */
-  bool by_joints;  /* and nothing but its joints does */
-  bool row;        /* it comes again one way, by base[0]; base[1] is 0 */
-  bool clear;      /* or it is beyond doubt: all correlates wherever they lead */
-  bool due;        /* it is larger than a patch, and does so beside the hole */
+  bool by_joints;  /* regular, but nothing but its joints is */
+  bool clear;      /* regular beyond doubt: all correlates wherever they lead */
+  bool row;        /* not regular, but comes again one way, by base[0]; base[1] is 0 */
+  bool due;        /* patches do not see it as a whole, and it comes again beside the hole */
 } rc_periods;
 
 /* Peaks of the masked correlation of the level's sources with themselves, displaced in the plane.
- * count: of points. joints: what is not regular by itself may be so by its joints. */
+ * count: of points. regular: whether to ask what is regular, or a row, too; joints: what is not by
+ * itself may be so by its joints. */
 recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key, int count,
-                              bool joints, rc_periods *periods);
+                              bool regular, bool joints, rc_periods *periods);
 
 #endif

@@ -5,8 +5,9 @@
 #include "base/memory.h"
 #include "synthesis/search/evaluate.h"
 
-/* So many periods each way. */
+/* So many periods each way, and of a row. */
 #define MOST_TIMES 4
+#define ROW_TIMES 12
 #define SIDE (2 * MOST_TIMES + 1)
 /* A range reaches a little beyond what it is to hold, which is no farther than this. */
 #define REACH_BY 1.05f
@@ -22,18 +23,21 @@ recede_status rc_periods_of_all(rc_context *context, const rc_image *images, con
   RC_TRY(rc_level_new(context, &flags[levels - 1], &coarse, &level));
   level.sides.px = 1;
   RC_TRY(rc_level_see(context, &images[levels - 1], &none, 1.f, gain, true, &level));
-  RC_TRY(rc_find_periods(context, &level, key, RC_REGULAR_POINTS, false, periods));
+  RC_TRY(rc_find_periods(context, &level, key, RC_REGULAR_POINTS, true, false, periods));
   rc_release(context, mark);
   return rc_poll(context);
 }
 
-/* The n-th of SIDE * SIDE, the middle one of which moves nothing; of a row the nearest, which are
- * so many each way. */
+/* The middle one moves nothing. */
+static int move_count(const rc_periods *periods) {
+  return periods->row ? 2 * ROW_TIMES + 1 : SIDE * SIDE;
+}
+
 static rc_copy move_by(const rc_periods *periods, int n) {
+  const rc_copy *p = &periods->base[0], *q = &periods->base[1];
   float i = (float)(n % SIDE - MOST_TIMES), j = (float)(n / SIDE - MOST_TIMES);
-  const rc_copy *base = periods->base;
-  if (periods->row) i = (float)(n - SIDE * SIDE / 2), j = 0;
-  return (rc_copy){i * base[0].a + j * base[1].a, i * base[0].b + j * base[1].b, 0.f};
+  if (periods->row) i = (float)(n - ROW_TIMES), j = 0;
+  return (rc_copy){i * p->a + j * q->a, i * p->b + j * q->b, 0.f};
 }
 
 /* The ratio nearest to 1 by which a patch whole periods away is source; 1 where there is none. */
@@ -41,8 +45,8 @@ static float nearest_ratio(const rc_level *level, const rc_periods *periods, int
   rc_chart flat = rc_chart_flat(level->chart);
   float best = WIDEST;
   size_t at;
-  for (int n = 0; n < SIDE * SIDE; n++) {
-    if (n == SIDE * SIDE / 2) continue;
+  for (int n = 0, count = move_count(periods); n < count; n++) {
+    if (n == count / 2) continue;
     rc_place place =
         rc_copy_place(&flat, move_by(periods, n), rc_level_x(level, x), rc_level_y(level, y));
     if (!rc_place_at(level, &place, &at) || level->room[at] <= RC_PATCH_RADIUS + 1) continue;
@@ -67,9 +71,10 @@ recede_status rc_moves_by_periods(rc_context *context, const rc_periods *periods
                                   const rc_copy **moves, int *count) {
   rc_copy *made;
   *count = 0;
-  RC_TRY(RC_NEW(context, SIDE * SIDE - 1, &made));
-  for (int n = 0; n < SIDE * SIDE; n++)
-    if (n != SIDE * SIDE / 2) made[(*count)++] = move_by(periods, n);
+  int all = move_count(periods);
+  RC_TRY(RC_NEW(context, all - 1, &made));
+  for (int n = 0; n < all; n++)
+    if (n != all / 2) made[(*count)++] = move_by(periods, n);
   *moves = made;
   return RECEDE_OK;
 }

@@ -1,6 +1,7 @@
-/* What is regular, all that there is coming again both ways, needs no more than its periods. What
- * lies beside a square of a chess board is another one's, so nothing is foreign to it; and a start
- * by patches, which see less than a square, goes on with one where the next is due. */
+/* What is regular, all that there is coming again both ways, or one way in a row, needs no more
+ * than its periods. What lies beside a square of a chess board is another one's, so nothing is
+ * foreign to it; and a start by patches, which see less than a square, goes on with one where the
+ * next is due. */
 #ifndef RECEDE_SYNTHESIS_SEARCH_REGULAR_H
 #define RECEDE_SYNTHESIS_SEARCH_REGULAR_H
 
@@ -12,7 +13,7 @@ recede_status rc_periods_of_all(rc_context *context, const rc_image *images, con
                                 int levels, const rc_chart *chart, float gain, uint64_t key,
                                 rc_periods *periods);
 /* Widens the ranges of scale until they hold, of each target pixel, the source nearest in scale
- * that lies up to four whole periods away. */
+ * that lies a few whole periods away. */
 void rc_reach_periods(rc_level *level, const rc_periods *periods);
 /* Moves by whole periods, the context's. */
 recede_status rc_moves_by_periods(rc_context *context, const rc_periods *periods,

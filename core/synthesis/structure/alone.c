@@ -61,7 +61,7 @@ static int count_again(const beside *at, float outwards, float px, int reach_px,
 
 /* Whether a period that leads away from the line leads to one that looks the same, or out of what
  * is known. */
-static bool comes_again_by(const beside *at, rc_copy period, float px) {
+static bool comes_again_by(const beside *at, rc_copy period, float a_px, float b_px) {
   float length = sqrtf(period.a * period.a + period.b * period.b);
   int seen = 0;
   if (fabsf(period.a * at->along.b - period.b * at->along.a) < LEAST_SINE * length) return true;
@@ -69,6 +69,7 @@ static bool comes_again_by(const beside *at, rc_copy period, float px) {
     float sign = n % 2 ? 1 : -1, outwards = n / 2 ? 1 : -1;
     rc_profile own;
     if (!profile_of(at, (rc_copy){0, 0, 0}, outwards, &own)) continue;
+    float px = outwards < 0 ? a_px : b_px;
     for (int k = -OFF_PX; k <= OFF_PX; k++) {
       rc_copy move = {sign * period.a - (float)k * px * at->along.b,
                       sign * period.b + (float)k * px * at->along.a, 0};
@@ -95,8 +96,8 @@ bool rc_stands_alone(const rc_seen *picture, const rc_chart *chart, const rc_cro
   float a = rc_chart_w(chart, line->ax, line->ay), b = rc_chart_w(chart, line->bx, line->by);
   int seen = 0;
   if (!(a > 0 && b > 0)) return false;
-  float px = 2 / (a + b);
-  if (periods && comes_again_by(&at, periods[0], px) && comes_again_by(&at, periods[1], px))
+  if (periods && comes_again_by(&at, periods[0], 1 / a, 1 / b) &&
+      comes_again_by(&at, periods[1], 1 / a, 1 / b))
     return false;
   return count_again(&at, -1, 1 / a, reach_px, &seen) <= MOST_AGAIN &&
          count_again(&at, 1, 1 / b, reach_px, &seen) <= MOST_AGAIN && seen >= reach_px;
