@@ -36,16 +36,32 @@ typedef struct bar {
 /* Drawn chess boards, hexagons, pavers, parquet and facades correlate by .6 to .98, and rise by .75
  * to 1.1. Dunes have .9 and 1, but one way. Beside the hole they are off by .1 to 1, bare ground
  * among heaps by 2. */
-static const bar by_all = {1, .6f, .75f, .4f, 0, 0, 0, 1.2, false};
+static const bar by_all = {
+    .bases = 1, .value = .6f, .rise = .75f, .confirmed = .4f, .most_beside = 1.2};
 /* A grid of bars rises less on the way along them, and is only .16 to .77 off between, but it
  * correlates by .82 to .98 wherever its periods lead. */
-static const bar by_bars = {8, .8f, .4f, .75f, 3.f, .65, .8, 1.2, false};
+static const bar by_bars = {.bases = 8,
+                            .value = .8f,
+                            .rise = .4f,
+                            .confirmed = .75f,
+                            .cells = 3.f,
+                            .whole = .65,
+                            .most_off = .8,
+                            .most_beside = 1.2};
 /* Cells of which the picture shows two or three each way: what would confirm them may lie beyond
  * the lags looked at. In the mean .73 to .93, and beside the hole off by .2 to .54, where
  * gravel crosses roof tiles .7. */
-static const bar by_cells = {1, .7f, .6f, .4f, 3.f, .65, .65, .6, true};
+static const bar by_cells = {.bases = 1,
+                             .value = .7f,
+                             .rise = .6f,
+                             .confirmed = .4f,
+                             .cells = 3.f,
+                             .whole = .65,
+                             .most_off = .65,
+                             .most_beside = .6,
+                             .unseen = true};
 /* What repeats one way, as the stripes of a crossing do, is due as clearly, and not as near. */
-static const bar by_row = {1, .85f, .8f, 0, 0, 0, 0, .6, false};
+static const bar by_row = {.bases = 1, .value = .85f, .rise = .8f, .most_beside = .6};
 #define LEAST_ROW_PX 5.f
 /* Tiles that are stained, or of many colours, have nothing in common but their joints, thin lines
  * that are darker or brighter than what lies within so many px: hexagons, octagons, window panes,
@@ -54,7 +70,13 @@ static const bar by_row = {1, .85f, .8f, 0, 0, 0, 0, .6, false};
  * grain of a table .6, drapery 4. */
 #define JOINTS_WITHIN_PX 3
 #define MOST_DEVIATIONS 2.f /* a joint is a joint, however dark */
-static const bar by_joints = {8, .25f, .25f, .2f, 6.f, 0, .65, 1.6, false};
+static const bar by_joints = {.bases = 8,
+                              .value = .25f,
+                              .rise = .25f,
+                              .confirmed = .2f,
+                              .cells = 6.f,
+                              .most_off = .65,
+                              .most_beside = 1.6};
 /* Of a lattice every place that its periods lead to correlates by so much: joints .21 to .52, walls
  * in courses, setts and boards less than .17. */
 #define LEAST_ON .2f
