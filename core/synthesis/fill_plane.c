@@ -144,9 +144,10 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
   int from = e->params->engine_lines ? rc_lines_level(e->flags, e->level_count) : -1;
   if (from < 0) return RECEDE_OK;
   float px = (float)(1 << (e->level_count - 1));
-  rc_copy by[2]; /* A row tells nothing of what runs along it. */
+  rc_copy by[2];
   for (int k = 0; k < 2; k++)
     by[k] = (rc_copy){px * e->of_all.base[k].a, px * e->of_all.base[k].b, 0};
+  /* A row tells nothing of what runs along it. */
   for (int n = from; n < e->level_count && n <= from + 1 && !e->line_count; n++)
     RC_TRY(rc_lines_find(context, &e->images[n], &e->flags[n], n, n > from, &e->chart,
                          e->due && !e->of_all.row ? by : NULL, e->lines, &e->line_count));
