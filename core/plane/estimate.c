@@ -210,16 +210,16 @@ static double cost_agreed_on(const search *s, int model) {
 
 /* The reading of least cost of those that explain more than the frontal plane does, with a little
  * favour for raised textures and more against raised textures of straight lines. */
-static void choose(search *s, double frontal) {
+static void choose(search *s) {
   double least = INFINITY;
-  s->r.best = (rc_point){0, 0, frontal};
+  s->r.best = (rc_point){0, 0, s->r.frontal};
   for (int m = 0; m < RC_MODELS; m++) {
     double agreed = cost_agreed_on(s, RC_MODELS - 1 - m), lines = times_for_lines(s, m);
     for (int i = 0; i < RC_STARTS; i++) {
       const rc_point *p = &s->r.closer[m][i];
       double cost = cost_among_readings(p) * lines;
       if (m == RC_RAISED && lines == 1) cost /= RAISED_FAVOUR;
-      if (cost >= least || p->cost > (1 - LEAST_GAIN) * frontal ||
+      if (cost >= least || p->cost > (1 - LEAST_GAIN) * s->r.frontal ||
           p->cost * lines > MOST_OF_AGREED * agreed)
         continue;
       least = cost;
@@ -247,10 +247,10 @@ static recede_status find_points(rc_context *context, search *s, const rc_image 
 
 static recede_status find_best(rc_context *context, search *s) {
   RC_TRY(rc_parallel(context, RC_MODELS * COARSE, look, s));
-  double frontal = s->coarse[RC_FLAT][0].cost;
+  s->r.frontal = s->coarse[RC_FLAT][0].cost;
   for (int m = 0; m < RC_MODELS; m++) take_starts(s->coarse[m]);
   RC_TRY(rc_parallel(context, RC_MODELS * RC_STARTS, look_closer, s));
-  choose(s, frontal);
+  choose(s);
   return RECEDE_OK;
 }
 

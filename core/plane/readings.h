@@ -24,6 +24,7 @@ typedef struct rc_readings {
   rc_point closer[RC_MODELS][RC_STARTS], part[RC_PARTS];
   int best_model;
   rc_point best;
+  double frontal; /* what the frontal plane costs */
 } rc_readings;
 
 static inline rc_lean rc_lean_of(const rc_point *p) { return (rc_lean){p->x, p->y}; }

@@ -60,6 +60,23 @@ static void what_tells_nothing_is_not_trusted(void) {
   g_free(q);
 }
 
+/* By chance a steep plane explains a patchwork a little better than a frontal one does. */
+static void patchworks_are_seldom_trusted(void) {
+  int trusted = 0, all = 0;
+  question *q = new_question();
+  for (int side = 4; side <= 6; side++)
+    for (int n = 0; n < 8; n++, all++) {
+      draw_patchwork(side, n, q->gray);
+      g_assert_cmpint(ask(q), ==, RECEDE_OK);
+      g_test_message("%d x %d, %d: slant %.0f tilt %.0f, confidence %.2f", side, side, n,
+                     q->answer.slant_deg, q->answer.tilt_deg, q->answer.confidence);
+      trusted += q->answer.confidence >= RECEDE_CONFIDENCE_LOW;
+    }
+  g_test_message("%d of %d are trusted", trusted, all);
+  g_assert_cmpint(6 * trusted, <=, all);
+  g_free(q);
+}
+
 /* The upper half recedes upwards and the lower half downwards: no one plane is both. */
 static void two_planes_are_not_trusted(void) {
   question *q = new_question(), *other = new_question();
@@ -251,6 +268,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/orient/lawns", lawns_lean_as_they_do);
   g_test_add_func("/orient/frontal", frontal_textures_stay_frontal);
   g_test_add_func("/orient/nothing", what_tells_nothing_is_not_trusted);
+  g_test_add_func("/orient/patchworks", patchworks_are_seldom_trusted);
   g_test_add_func("/orient/two-planes", two_planes_are_not_trusted);
   g_test_add_func("/orient/horizon-inside", horizon_inside_the_picture);
   g_test_add_func("/orient/few-lines", few_lines_tell_what_many_do_not);

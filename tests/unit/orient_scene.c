@@ -98,6 +98,20 @@ void draw(texture_kind kind, double slant, double tilt, double on_x, double on_y
     }
 }
 
+/* side x side lawns seen from above, of sizes, contrasts and brightnesses by chance: no plane. */
+void draw_patchwork(int side, int n, guint8 *gray) {
+  for (int i = 0; i < SIDE * SIDE; i++) {
+    int column = i % SIDE * side / SIDE, row = i / SIDE * side / SIDE;
+    double texels = exp2(2 * chance(column, row, 4 * n + 40) - 1);
+    double u = (i % SIDE + 1000 * chance(column, row, 4 * n + 41)) * texels;
+    double v = (i / SIDE + 1000 * column) * texels;
+    double contrast = .5 + .5 * chance(column, row, 4 * n + 42);
+    double brightness = .3 + .4 * chance(column, row, 4 * n + 43);
+    double value = brightness + contrast * (lawn(u, v) - .5);
+    gray[i] = (guint8)(255 * fmin(fmax(value, 0), 1) + .5);
+  }
+}
+
 /* n . r: what is nearer faces more of it, for its distance. */
 static double facing(double slant, double tilt, int x, int y) {
   double s = slant * RADIAN, t = tilt * RADIAN, f = .5 * SIDE / tan(FOV * RADIAN / 2),

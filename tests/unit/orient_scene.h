@@ -16,6 +16,8 @@ typedef enum { BRICKS, DOTS, NOISE, PIER, LAWN } texture_kind;
 double chance(int x, int y, int n);
 /* One texel is 1 px at (on_x, on_y); beyond the horizon a plain sky. */
 void draw(texture_kind kind, double slant, double tilt, double on_x, double on_y, guint8 *gray);
+/* side x side lawns seen from above, of sizes, contrasts and brightnesses by chance: no plane. */
+void draw_patchwork(int side, int n, guint8 *gray);
 /* A floor, and a wall of the same on its left that recedes to the right, twice as far off. */
 void draw_street(guint8 *gray);
 /* Blades that stand up from a floor. */
