@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "kernels/kernels.h"
+#include "synthesis/structure/strays.h"
 
 /* A line's own profile is found within so many px of where a straight fit over a longer run puts
  * it: lines are a little bent, and so are lenses. */
@@ -40,6 +41,10 @@
  * much farther away, or farther. */
 #define FARTHER_PX 10.f
 #define FARTHEST_PX 30.f
+/* Where pieces bring along what crosses the line, others that keep nearly as much of it, and of
+ * which at most half do and this many fewer, are taken from up to its length farther away. */
+#define NEARLY_AS_MUCH .9f
+#define FEWER_STRAYS 2
 /* Of a branch that is clear so many times the same piece may be moved in, for what it leaves ends,
  * too; so others come of edges of stones. */
 #define MOST_GROUPS 2
@@ -57,6 +62,9 @@ static const struct way {
  * where it is less than that (the hole has about 1), does not. */
 #define LEAST_NEARER 1.5f
 #define LEAST_W .1f
+
+/* Where the line is parted: what lies before comes from beyond a, the rest from beyond b. */
+static const float splits[] = {1, 0, .5f, .25f, .75f, .125f, .375f, .625f, .875f};
 
 /* Profiles are read across the line's direction from a to b, in the same sense on both sides. */
 typedef struct frame {
@@ -220,9 +228,43 @@ static float follow_both(const frame *f, float split, const rc_profile *own_a,
   return sum / (float)f->line->pieces;
 }
 
+static int count_strays(const frame *f, const rc_clean *clean) {
+  int count = 0, length = (int)(f->length / (float)f->line->pieces) + 2;
+  for (int k = 0; k < f->line->pieces; k++)
+    count += rc_strays_at(&f->ruler, clean, f->line->from_x[k], f->line->from_y[k], length);
+  return count;
+}
+
+/* As the line is at its cleaner end. */
+static bool measure_clean(const frame *f, rc_clean *clean) {
+  rc_clean b;
+  bool at_a = rc_clean_measure(&f->ruler, f->line->ax, f->line->ay, -1, clean);
+  bool at_b = rc_clean_measure(&f->ruler, f->line->bx, f->line->by, 1, &b);
+  if (at_b && (!at_a || b.usual < clean->usual)) *clean = b;
+  return at_a || at_b;
+}
+
+/* Where something crosses the line beside the hole, sources farther along it. */
+static void prefer_clean(frame *f, const struct way *way, const rc_profile *own_a,
+                         const rc_profile *own_b, rc_crossing *best) {
+  rc_clean clean;
+  float enough = NEARLY_AS_MUCH * best->kept;
+  *f->line = *best;
+  if (!measure_clean(f, &clean)) return;
+  int strays = count_strays(f, &clean);
+  int most = strays / 2 < strays - FEWER_STRAYS ? strays / 2 : strays - FEWER_STRAYS;
+  for (f->farther_px = 0; most >= 0 && f->farther_px <= f->length; f->farther_px += FARTHER_PX)
+    for (int i = 0; i < way->splits; i++) {
+      float kept = follow_both(f, splits[i], own_a, own_b);
+      int left = kept < enough ? strays : count_strays(f, &clean);
+      if (left > most) continue;
+      most = left - 1;
+      *best = *f->line, best->kept = kept;
+    }
+}
+
 static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int windows,
                            const struct way *way, rc_crossing *line) {
-  static const float splits[] = {1, 0, .5f, .25f, .75f, .125f, .375f, .625f, .875f};
   rc_profile own_a, own_b;
   float most = LEAST_KEPT;
   rc_crossing best;
@@ -240,6 +282,7 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int wi
       most = kept, best = *line, best.kept = kept, found = true;
     }
   if (!found) return false;
+  prefer_clean(&f, way, &own_a, &own_b, &best);
   *line = best;
   f.ruler.chart = chart;
   reach(&f, -1, line->ax, line->ay, line->reach_px);
