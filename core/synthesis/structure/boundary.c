@@ -8,6 +8,7 @@
 #include "synthesis/structure/axes.h"
 #include "synthesis/structure/ends.h"
 #include "synthesis/structure/follow.h"
+#include "synthesis/structure/lines.h"
 #include "synthesis/structure/repeats.h"
 
 /* Stones and grass are noise to a line. So it is looked for so many levels coarser than others are,
@@ -32,6 +33,8 @@
 #define MOST_BESIDE_PX 32
 #define PART_OF_PEAK .5f
 #define FARTHEST_END_PX 1e4f
+/* What is less in the hole lies beside it. */
+#define LEAST_PART_IN_THE_HOLE .1f
 
 /* The coarsest level, and the sure lines that were found before. What they reach tells nothing of
  * the ground beside them: a road has the same on both sides of its marking. */
@@ -87,6 +90,11 @@ static float step_across(const coarsest *in, const rc_crossing *c, int from) {
   for (int k = 0; k < in->image->channels; k++)
     sum += (a.mean[k] - b.mean[k]) * (p.mean[k] - q.mean[k]);
   return sum;
+}
+
+/* Seen coarser the hole reaches to what lies beside it. */
+static bool crosses_the_hole(const rc_mask *finest, const rc_crossing *line) {
+  return rc_part_in_the_hole(finest, line) > LEAST_PART_IN_THE_HOLE;
 }
 
 /* The line with the greatest step among those that go on by themselves, of faint ones among those
@@ -219,8 +227,9 @@ static recede_status search(rc_context *context, const rc_image *images, const r
       rc_crossing another = {.band = band->band};
       *found = choose(&in, last - exponent, &seen, &here, least, lines, count, &best, &another) &&
                way != IS_EVEN;
-      if (!band->band && another.band) {
-        *band = rc_crossing_coarser(another, -exponent);
+      another = rc_crossing_coarser(another, -exponent);
+      if (!band->band && another.band && crosses_the_hole(&masks[0], &another)) {
+        *band = another;
         band->faint = faint;
         memcpy(band->axis, line->axis, sizeof band->axis);
       }
@@ -230,6 +239,8 @@ static recede_status search(rc_context *context, const rc_image *images, const r
     memcpy(best.axis, line->axis, sizeof best.axis);
     best.faint = faint;
     *line = rc_crossing_coarser(best, -exponent);
+    *found = crosses_the_hole(&masks[0], line);
+    if (!*found) continue;
     *apart_px = (float)(RC_PROFILE << exponent);
     sides->boundaries[0] = boundary_of(chart, line);
     sides->boundary_count = 1;

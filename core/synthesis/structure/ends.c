@@ -1,6 +1,8 @@
 #include "synthesis/structure/ends.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -16,11 +18,42 @@
 /* Of the change from one sample to the next. */
 static const float middle[RC_PROFILE] = {0, .2f, .6f, 1, 1, .6f, .2f};
 
+/* A row that is so many times as far from the mean as half of all is what crosses the line, and
+ * tells nothing of it; nor do those beside it. So many of a run may. */
+#define CROSSED 12.f
+#define BESIDE_CROSSED 6.f
+#define MOST_CROSSED 4
+
+/* Takes them from the sums. */
+static void leave_out_crossed(const float rows[RUN][RC_PROFILE], int missing[RC_PROFILE],
+                              float mean[RC_PROFILE], float square[RC_PROFILE]) {
+  float unlike[RUN], sorted[RUN];
+  int crossed = 0;
+  for (int k = 0; k < RUN; k++) {
+    unlike[k] = 0;
+    for (int o = 0; o < RC_PROFILE; o++) {
+      float off = rows[k][o] - mean[o] / (float)(RUN - missing[o]);
+      if (!isnan(off)) unlike[k] += off * off;
+    }
+  }
+  memcpy(sorted, unlike, sizeof sorted);
+  qsort(sorted, RUN, sizeof *sorted, rc_by_value);
+  float usual = fmaxf(sorted[RUN / 2], 1e-6f), most = BESIDE_CROSSED * usual;
+  if (sorted[RUN - 1] <= CROSSED * usual) return;
+  for (int k = 0; k < RUN; k++) crossed += unlike[k] > most;
+  if (crossed > MOST_CROSSED) return;
+  for (int k = 0; k < RUN; k++)
+    for (int o = 0; o < RC_PROFILE && unlike[k] > most; o++) {
+      if (isnan(rows[k][o])) continue;
+      missing[o]++, mean[o] -= rows[k][o], square[o] -= rows[k][o] * rows[k][o];
+    }
+}
+
 rc_run rc_run_measure(const rc_seen *seen, float x, float y, float ux, float uy, float outwards) {
   rc_run p = {.strength = 0};
   const rc_mask *flags = seen->flags;
   int missing[RC_PROFILE] = {0};
-  float square[RC_PROFILE] = {0}, noise = 0, centre = 0, signal = 0;
+  float rows[RUN][RC_PROFILE], square[RC_PROFILE] = {0}, noise = 0, centre = 0, signal = 0;
   for (int k = 0; k < RUN; k++)
     for (int o = 0; o < RC_PROFILE; o++) {
       float along = outwards * (RC_PROFILE_FROM_PX + STEP_PX * (float)k);
@@ -30,11 +63,14 @@ rc_run rc_run_measure(const rc_seen *seen, float x, float y, float ux, float uy,
       size_t at = (size_t)py * (size_t)flags->width + (size_t)px;
       if (!rc_inside(flags->width, flags->height, px, py) || !(flags->data[at] & RC_SOURCE)) {
         if (++missing[o] > MOST_MISSING) return p;
+        rows[k][o] = NAN;
         continue;
       }
       float value = seen->value[at];
+      rows[k][o] = value;
       p.mean[o] += value, square[o] += value * value;
     }
+  if (seen->without_crossings) leave_out_crossed(rows, missing, p.mean, square);
   for (int o = 0; o < RC_PROFILE; o++) {
     float count = (float)(RUN - missing[o]);
     p.mean[o] /= count;

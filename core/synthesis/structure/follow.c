@@ -20,7 +20,6 @@
 #define GOES_ON_WINDOWS 3
 #define GOES_ON_WINDOWS_OF_STRONGEST 2
 #define GOES_ON_WINDOWS_SEEN_COARSER 1
-#define STRONGEST .02f
 #define GOES_ON_PX 24
 #define LEAST_GOING_ON .75f
 #define LEAST_OF_CONTRAST .02f /* of its square: less is another thing's slope */
@@ -42,9 +41,13 @@
 #define FARTHER_PX 10.f
 #define FARTHEST_PX 30.f
 /* Where pieces bring along what crosses the line, others that keep nearly as much of it, and of
- * which at most half do and this many fewer, are taken from up to its length farther away. */
+ * which at most half do, and so many fewer where others at the hole's border are as strong, are
+ * taken from up to its length farther away. */
 #define NEARLY_AS_MUCH .9f
 #define FEWER_STRAYS 2
+/* Where w at one end is no more than so many times that at the other: else what lies along it gets
+ * wider, and the edges of a marking seem to cross each other. */
+#define HARDLY_NEARER 1.2f
 /* Of a branch that is clear so many times the same piece may be moved in, for what it leaves ends,
  * too; so others come of edges of stones. */
 #define MOST_GROUPS 2
@@ -244,15 +247,22 @@ static bool measure_clean(const frame *f, rc_clean *clean) {
   return at_a || at_b;
 }
 
+/* How many times w at one end that at the other is; INFINITY at the horizon. */
+static float nearer(const rc_chart *chart, const rc_crossing *line) {
+  float a = rc_chart_w(chart, line->ax, line->ay), b = rc_chart_w(chart, line->bx, line->by);
+  return fminf(a, b) > LEAST_W ? fmaxf(a, b) / fminf(a, b) : INFINITY;
+}
+
 /* Where something crosses the line beside the hole, sources farther along it. */
 static void prefer_clean(frame *f, const struct way *way, const rc_profile *own_a,
                          const rc_profile *own_b, rc_crossing *best) {
   rc_clean clean;
   float enough = NEARLY_AS_MUCH * best->kept;
   *f->line = *best;
-  if (!measure_clean(f, &clean)) return;
+  if (nearer(f->chart, best) > HARDLY_NEARER || !measure_clean(f, &clean)) return;
   int strays = count_strays(f, &clean);
-  int most = strays / 2 < strays - FEWER_STRAYS ? strays / 2 : strays - FEWER_STRAYS;
+  int fewer = f->line->as_strong > RC_HARDLY_AS_STRONG ? FEWER_STRAYS : 1;
+  int most = strays / 2 < strays - fewer ? strays / 2 : strays - fewer;
   for (f->farther_px = 0; most >= 0 && f->farther_px <= f->length; f->farther_px += FARTHER_PX)
     for (int i = 0; i < way->splits; i++) {
       float kept = follow_both(f, splits[i], own_a, own_b);
@@ -290,20 +300,16 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int wi
   return true;
 }
 
-static bool leads_to_the_viewer(const rc_chart *chart, const rc_crossing *line) {
-  float a = rc_chart_w(chart, line->ax, line->ay), b = rc_chart_w(chart, line->bx, line->by);
-  return fminf(a, b) > LEAST_W && fmaxf(a, b) > LEAST_NEARER * fminf(a, b);
-}
-
 int rc_windows_of(const rc_crossing *line, bool seen_coarser) {
-  if (line->as_strong > STRONGEST) return GOES_ON_WINDOWS;
+  if (line->as_strong > RC_HARDLY_AS_STRONG) return GOES_ON_WINDOWS;
   return seen_coarser ? GOES_ON_WINDOWS_SEEN_COARSER : GOES_ON_WINDOWS_OF_STRONGEST;
 }
 
 bool rc_follow(const rc_seen *picture, const rc_chart *chart, int windows, rc_crossing *line) {
   for (size_t n = 0; n < sizeof ways / sizeof *ways; n++) {
     rc_crossing c = *line;
-    if (ways[n].widens && !leads_to_the_viewer(chart, line)) continue;
+    float times = nearer(chart, line);
+    if (ways[n].widens && !(times > LEAST_NEARER && times < INFINITY)) continue;
     if (!follow_one_way(picture, chart, windows, &ways[n], &c)) continue;
     *line = c;
     return true;

@@ -40,7 +40,7 @@ static float rise_of(const rc_run *p) {
   return dot / sqrtf(square * (RC_PROFILE - 1));
 }
 
-bool rc_lies_in_the_hole(const rc_mask *flags, const rc_crossing *c) {
+float rc_part_in_the_hole(const rc_mask *flags, const rc_crossing *c) {
   int inside = 0, samples = 32;
   for (int i = 1; i < samples; i++) {
     float t = (float)i / (float)samples;
@@ -48,7 +48,11 @@ bool rc_lies_in_the_hole(const rc_mask *flags, const rc_crossing *c) {
     int y = (int)floorf(c->ay + t * (c->by - c->ay) + .5f);
     inside += rc_inside(flags->width, flags->height, x, y) && *rc_flag(flags, x, y) & RC_TARGET;
   }
-  return (float)inside > LEAST_INSIDE * (float)samples;
+  return (float)inside / (float)samples;
+}
+
+bool rc_lies_in_the_hole(const rc_mask *flags, const rc_crossing *c) {
+  return rc_part_in_the_hole(flags, c) > LEAST_INSIDE;
 }
 
 /* Moves both ends across the line to where it is clearest on both sides. The direction changes with
@@ -188,6 +192,30 @@ recede_status rc_lines_at(rc_context *context, const rc_seen *seen, bool faint,
   return RECEDE_OK;
 }
 
+/* Where hardly anything is as strong, a line that others cross beside the hole: they are noise to
+ * it, and hide it, or make it faint. */
+static recede_status find_crossed(rc_context *context, rc_seen *seen,
+                                  rc_crossing lines[RC_MOST_LINES], int *count) {
+  int kept = 0;
+  bool hidden = !*count;
+  seen->without_crossings = true;
+  if (hidden) RC_TRY(rc_lines_at(context, seen, false, lines, count));
+  for (int i = 0; i < *count; i++) {
+    rc_crossing *c = &lines[i];
+    bool stands_out = c->as_strong <= RC_HARDLY_AS_STRONG;
+    if (stands_out && !hidden) {
+      float dx = c->bx - c->ax, dy = c->by - c->ay, length = sqrtf(dx * dx + dy * dy);
+      rc_run a = rc_run_measure(seen, c->ax, c->ay, dx / length, dy / length, -1);
+      rc_run b = rc_run_measure(seen, c->bx, c->by, dx / length, dy / length, 1);
+      c->strength = fmaxf(c->strength, fminf(a.strength, b.strength));
+    }
+    if (stands_out || !hidden) lines[kept++] = *c;
+  }
+  *count = kept;
+  seen->without_crossings = false;
+  return RECEDE_OK;
+}
+
 recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc_mask *mask,
                             int exponent, bool corners, const rc_chart *chart,
                             const rc_copy periods[2], rc_crossing lines[RC_MOST_LINES],
@@ -197,6 +225,7 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_see(context, image, mask, axis, &seen));
   RC_TRY(rc_lines_at(context, &seen, false, lines, count));
+  RC_TRY(find_crossed(context, &seen, lines, count));
   if (corners) rc_crossings_keep_corners(mask, lines, count);
   rc_chart here = rc_chart_coarser(*chart, exponent);
   int reach_px = rc_longer_side(rc_box_of(mask, RC_TARGET));

@@ -14,7 +14,9 @@
 
 /* The finest level that lines are looked for in; -1: there is none, or no border. */
 int rc_lines_level(const rc_mask *masks, int levels);
-/* Whether a line is in the hole for nearly all of its way. flags: of the same level. */
+/* How much of a line's way between its ends is in the hole, 0..1, and whether nearly all of it is.
+ * flags: of the same level. */
+float rc_part_in_the_hole(const rc_mask *flags, const rc_crossing *line);
 bool rc_lies_in_the_hole(const rc_mask *flags, const rc_crossing *line);
 /* The weights of colours that lines are looked for by. */
 const float *rc_brightness_axis(const rc_image *image);

@@ -8,7 +8,7 @@
 /* Its run is so long: junctions may be near. */
 #define RUN_PX 24
 /* A row and its two neighbours that are so many times as unlike as half of all are no chance. */
-#define TIMES_USUAL 30.f
+#define TIMES_USUAL 20.f
 #define LEAST_USUAL 6e-5f /* of white, squared: 2 of 255 */
 #define LONGEST_PX 64
 
