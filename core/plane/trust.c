@@ -30,12 +30,13 @@
 #define LEVEL_TRUST .53
 #define LEAST_TOLD .05
 #define LEVEL_SHARE .27
-/* A steep plane explains much that a frontal one does not, or it is read into what has no plane:
- * from so much of the frontal plane's cost on it is doubted, from there on as far as that. Of drawn
- * planes right ones of more than 60 degrees cost at most .89 (pebbles in photos, too), wrong ones
- * .88 to .97. */
+/* A steep plane explains much that a frontal one does not, or it is read into what has no plane: it
+ * is doubted from the first of these parts of the frontal plane's cost on, and by so much from the
+ * second on, by which no wrong one of confidence 1 is believed. Of drawn planes right ones of more
+ * than 60 degrees cost at most .89 (pebbles in photos, too), wrong ones .88 to .97; all wrong ones
+ * were read steeper than 75. */
 #define HARDLY_BETTER .89
-#define NO_BETTER .93
+#define NO_BETTER_TO_TELL .93
 #define DOUBT_OF_NO_BETTER .6
 #define RATHER_STEEP_DEG 60
 #define STEEP_DEG 75
@@ -108,14 +109,14 @@ static double ramp(double value, double from, double to) {
 
 /* Whether the plane recedes far, and that explains hardly anything: 0..1. */
 static double explains_little(const rc_readings *s) {
-  double slant_deg = hypot(s->best.x, s->best.y) * 180 / M_PI;
+  double slant_deg = sqrt(s->best.x * s->best.x + s->best.y * s->best.y) * 180 / M_PI;
   return ramp(slant_deg, RATHER_STEEP_DEG, STEEP_DEG) *
-         ramp(s->best.cost / s->frontal, HARDLY_BETTER, NO_BETTER);
+         ramp(s->best.cost / s->frontal, HARDLY_BETTER, NO_BETTER_TO_TELL);
 }
 
 /* What is left unexplained must be small (a log2 power of 1 is a factor of two) and most cells must
  * lie on the plane, or lines must tell it; parts of the picture must say the same, and nothing else
- * may explain it as well. A level floor needs less of all that. */
+ * may explain it as well. A level floor needs less of all that. A steep plane must explain much. */
 double rc_trust(const rc_readings *s) {
   double lines = told_by_lines(s), left = s->best.cost * s->best.cost;
   double on_plane = share_on_plane(s) - NO_PLANE_SHARE;

@@ -92,9 +92,14 @@ static float step_across(const coarsest *in, const rc_crossing *c, int from) {
   return sum;
 }
 
-/* Seen coarser the hole reaches to what lies beside it. */
-static bool crosses_the_hole(const rc_mask *finest, const rc_crossing *line) {
-  return rc_part_in_the_hole(finest, line) > LEAST_PART_IN_THE_HOLE;
+/* Seen coarser, by 2^exponent, the hole reaches to what lies beside it. */
+static void drop_beside(const rc_mask *finest, int exponent, rc_crossing *lines, int *count) {
+  int kept = 0;
+  for (int i = 0; i < *count; i++) {
+    rc_crossing c = rc_crossing_coarser(lines[i], -exponent);
+    if (rc_part_in_the_hole(finest, &c) > LEAST_PART_IN_THE_HOLE) lines[kept++] = lines[i];
+  }
+  *count = kept;
 }
 
 /* The line with the greatest step among those that go on by themselves, of faint ones among those
@@ -223,13 +228,13 @@ static recede_status search(rc_context *context, const rc_image *images, const r
       RC_TRY(rc_see(context, &images[exponent], &masks[exponent], line->axis, &seen));
       if (way == IS_EVEN) RC_TRY(rc_see_contrast(context, &seen));
       RC_TRY(rc_lines_at(context, &seen, true, lines, &count));
+      drop_beside(&masks[0], exponent, lines, &count);
       faint = way > VARIES;
       rc_crossing another = {.band = band->band};
       *found = choose(&in, last - exponent, &seen, &here, least, lines, count, &best, &another) &&
                way != IS_EVEN;
-      another = rc_crossing_coarser(another, -exponent);
-      if (!band->band && another.band && crosses_the_hole(&masks[0], &another)) {
-        *band = another;
+      if (!band->band && another.band) {
+        *band = rc_crossing_coarser(another, -exponent);
         band->faint = faint;
         memcpy(band->axis, line->axis, sizeof band->axis);
       }
@@ -239,8 +244,6 @@ static recede_status search(rc_context *context, const rc_image *images, const r
     memcpy(best.axis, line->axis, sizeof best.axis);
     best.faint = faint;
     *line = rc_crossing_coarser(best, -exponent);
-    *found = crosses_the_hole(&masks[0], line);
-    if (!*found) continue;
     *apart_px = (float)(RC_PROFILE << exponent);
     sides->boundaries[0] = boundary_of(chart, line);
     sides->boundary_count = 1;

@@ -15,7 +15,8 @@
 /* And of what is no chance: markings and kerbs have 100 and more. */
 #define RC_CLEAR_STRENGTH 100.f
 
-/* Of the rest of the hole's border, where this part or less is as strong as a line. */
+/* A line stands out where no more than this part of the rest of the hole's border is as strong:
+ * joints of regular slabs have .03 to .3. */
 #define RC_HARDLY_AS_STRONG .02f
 
 /* A line from the hole's border at a to that at b, px of the finest level, or one that ends at a

@@ -18,14 +18,16 @@
 /* Of the change from one sample to the next. */
 static const float middle[RC_PROFILE] = {0, .2f, .6f, 1, 1, .6f, .2f};
 
-/* A row that is so many times as far from the mean as half of all is what crosses the line, and
- * tells nothing of it; nor do those beside it. So many of a run may. */
+/* A row that is so many times as far from the mean, squared, as half of all is what crosses the
+ * line, and tells nothing of it; then its edges are those that are half as far. So many of a run
+ * may. Less than 2 of 255 in each sample is nothing. */
 #define CROSSED 12.f
-#define BESIDE_CROSSED 6.f
+#define EDGE_OF_CROSSED 6.f
 #define MOST_CROSSED 4
+#define LEAST_UNLIKE 4e-4f
 
 /* Takes them from the sums. */
-static void leave_out_crossed(const float rows[RUN][RC_PROFILE], int missing[RC_PROFILE],
+static void leave_out_crossed(float rows[RUN][RC_PROFILE], int missing[RC_PROFILE],
                               float mean[RC_PROFILE], float square[RC_PROFILE]) {
   float unlike[RUN], sorted[RUN];
   int crossed = 0;
@@ -38,7 +40,7 @@ static void leave_out_crossed(const float rows[RUN][RC_PROFILE], int missing[RC_
   }
   memcpy(sorted, unlike, sizeof sorted);
   qsort(sorted, RUN, sizeof *sorted, rc_by_value);
-  float usual = fmaxf(sorted[RUN / 2], 1e-6f), most = BESIDE_CROSSED * usual;
+  float usual = fmaxf(sorted[RUN / 2], LEAST_UNLIKE), most = EDGE_OF_CROSSED * usual;
   if (sorted[RUN - 1] <= CROSSED * usual) return;
   for (int k = 0; k < RUN; k++) crossed += unlike[k] > most;
   if (crossed > MOST_CROSSED) return;

@@ -257,19 +257,22 @@ static float nearer(const rc_chart *chart, const rc_crossing *line) {
 static void prefer_clean(frame *f, const struct way *way, const rc_profile *own_a,
                          const rc_profile *own_b, rc_crossing *best) {
   rc_clean clean;
-  float enough = NEARLY_AS_MUCH * best->kept;
+  float enough = fmaxf(LEAST_KEPT, NEARLY_AS_MUCH * best->kept);
+  bool sure = rc_crossing_is_sure(best);
   *f->line = *best;
   if (nearer(f->chart, best) > HARDLY_NEARER || !measure_clean(f, &clean)) return;
   int strays = count_strays(f, &clean);
   int fewer = f->line->as_strong > RC_HARDLY_AS_STRONG ? FEWER_STRAYS : 1;
   int most = strays / 2 < strays - fewer ? strays / 2 : strays - fewer;
   for (f->farther_px = 0; most >= 0 && f->farther_px <= f->length; f->farther_px += FARTHER_PX)
-    for (int i = 0; i < way->splits; i++) {
-      float kept = follow_both(f, splits[i], own_a, own_b);
-      int left = kept < enough ? strays : count_strays(f, &clean);
+    for (int i = 0; i < way->splits && most >= 0; i++) {
+      rc_crossing c = *best;
+      c.kept = follow_both(f, splits[i], own_a, own_b);
+      int left =
+          c.kept < enough || rc_crossing_is_sure(&c) < sure ? strays : count_strays(f, &clean);
       if (left > most) continue;
       most = left - 1;
-      *best = *f->line, best->kept = kept;
+      *best = *f->line, best->kept = c.kept;
     }
 }
 

@@ -7,7 +7,7 @@
 typedef struct rc_seen {
   const rc_mask *flags;
   const float *value;
-  bool without_crossings; /* runs leave out what crosses them */
+  bool without_crossings; /* rc_run_measure leaves out what crosses a run */
 } rc_seen;
 
 /* Of an rc_seen; false: (x, y) is no source. */

@@ -59,6 +59,7 @@ bool rc_strays_at(const rc_ruler *ruler, const rc_clean *clean, float x, float y
   int count = 0, longest = length_px < LONGEST_PX ? length_px : LONGEST_PX;
   for (int k = 0; k < longest; k++)
     if (row_at(ruler, x, y, (float)k - .5f * (float)(longest - 1), rows[count])) count++;
+  if (2 * count < longest) return true;
   for (int k = 0; k < count; k++)
     for (int o = 0; o < RC_WIDE; o++)
       tone += (rows[k][o] - clean->mean[o]) / (float)(count * RC_WIDE);
