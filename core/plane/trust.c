@@ -33,8 +33,8 @@
 /* A steep plane explains much that a frontal one does not, or it is read into what has no plane: it
  * is doubted from the first of these parts of the frontal plane's cost on, and by so much from the
  * second on, by which no wrong one of confidence 1 is believed. Of drawn planes right ones of more
- * than 60 degrees cost at most .89 (pebbles in photos, too), wrong ones .88 to .97; all wrong ones
- * were read steeper than 75. */
+ * than 60 degrees cost at most .89 (pebbles in photos, too), wrong ones .88 to .97, read
+ * as 75 and more. */
 #define HARDLY_BETTER .89
 #define NO_BETTER_TO_TELL .93
 #define DOUBT_OF_NO_BETTER .6

@@ -15,9 +15,8 @@
 /* So far along from (x, y). False: not all of it is seen. */
 static bool row_at(const rc_ruler *ruler, float x, float y, float along, float row[RC_WIDE]) {
   float px = x + ruler->ux * along, py = y + ruler->uy * along;
-  float unit = rc_ruler_px(ruler->chart, px, py);
   for (int o = 0; o < RC_WIDE; o++) {
-    float across = (float)(o - RC_WIDE_HALF) * unit;
+    float across = (float)(o - RC_WIDE_HALF);
     if (!rc_ruler_sample(ruler, px - ruler->uy * across, py + ruler->ux * across, &row[o]))
       return false;
   }
