@@ -237,8 +237,8 @@ static void crossings(void) {
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/edges/kerbs", kerbs);
-  g_test_add_func("/edges/kerbs-among-setts", kerbs_among_setts);
-  g_test_add_func("/edges/slabs", slabs_joints);
+  test_add_judged("/edges/kerbs-among-setts", kerbs_among_setts);
+  test_add_judged("/edges/slabs", slabs_joints);
   g_test_add_func("/edges/rails", rails);
   g_test_add_func("/edges/posts", posts);
   g_test_add_func("/edges/corners", corners);

@@ -173,7 +173,7 @@ static void what_is_in_focus_stays_so(void) {
 
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
-  g_test_add_func("/kin/things", things_stay_on_their_side);
+  test_add_judged("/kin/things", things_stay_on_their_side);
   g_test_add_func("/kin/walker", nobody_is_copied_onto_a_road);
   g_test_add_func("/kin/focus", what_is_in_focus_stays_so);
   return g_test_run();

@@ -262,7 +262,7 @@ int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/laid/geometry", lies_as_the_plane_does);
   g_test_add_func("/laid/far", texture_goes_on_far_away);
-  g_test_add_func("/laid/boards", boards_go_on);
+  test_add_judged("/laid/boards", boards_go_on);
   g_test_add_func("/laid/refused", what_tells_no_plane_is_refused);
   g_test_add_func("/laid/small", small_ones_are_laid);
   g_test_add_func("/laid/transparent", transparent_is_filled);

@@ -16,6 +16,10 @@ typedef struct area {
   int x0, y0, x1, y1; /* x1, y1 exclusive */
 } area;
 
+/* A test that judges many fills together. Under sanitizers there is none: they watch the same code
+ * in the tests of single fills. */
+void test_add_judged(const char *path, GTestFunc judge);
+
 picture picture_new(int width, int height, int channels, recede_type type);
 picture picture_copy(const picture *from);
 void picture_clear(picture *p);
