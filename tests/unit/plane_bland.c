@@ -1,6 +1,7 @@
 /* What is even fits averages of anything, and must not fill holes for that, through the public
  * interface. */
 #include <math.h>
+#include <string.h>
 
 #include "plane_scene.h"
 
@@ -70,6 +71,34 @@ static task filled(picture image, area hole, const char *settings, int seed, int
   }
   task_succeeds(&t);
   return t;
+}
+
+/* One ground with paler patches, as much of it beside the hole as elsewhere. */
+static picture patchy_ground(int n) {
+  picture p = picture_new(320, 240, 1, RECEDE_U8);
+  for (int y = 0; y < 240; y++)
+    for (int x = 0; x < 320; x++)
+      picture_set(
+          &p, x, y, 0,
+          (float)(.5 + .25 * smooth_noise(x, y, 1 / 10., n) + .3 * smooth_noise(x, y, 1, n)));
+  return p;
+}
+
+/* A texture that fills the picture has places a little unlike all that is beside the hole: they are
+ * copied as any others. */
+static void patches_are_copied(void) {
+  int alike = 0;
+  for (int n = 0; n < 12; n++) {
+    const area hole = {100, 70, 220, 170};
+    task with = filled(patchy_ground(n), hole, "orientation=frontal quality=draft", 0, 0);
+    task without =
+        filled(patchy_ground(n), hole, "orientation=frontal quality=draft engine-alike=0", 0, 0);
+    alike += !memcmp(with.result.pixels, without.result.pixels, picture_bytes(&with.result));
+    task_clear(&with);
+    task_clear(&without);
+  }
+  g_test_message("%d of 12 grounds keep all their sources", alike);
+  g_assert_cmpint(alike, >=, 7);
 }
 
 typedef bool shows(const picture *p, int x, int y);
@@ -268,6 +297,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/bland/flowers", flowers_go_on);
   g_test_add_func("/bland/near", near_goes_on);
   g_test_add_func("/bland/moat", moat_is_crossed);
+  test_add_judged("/bland/patches", patches_are_copied);
   g_test_add_func("/bland/walls", walls_stay_out);
   g_test_add_func("/bland/people", people_stay_where_they_are);
   g_test_add_func("/bland/strangers", strangers_stay_where_they_are);

@@ -282,7 +282,7 @@ static void tiles_do_not(void) {
 static double verge_at(double x) { return 88 + .2 * x; }
 
 static picture verge(void) {
-  static const double parts[2][3] = {{1, .5, .4}, {.5, .75, .3}};
+  static const double parts[2][3] = {{.85, .6, .4}, {.65, .7, .35}};
   picture p = picture_new(WIDTH, HEIGHT, 3, RECEDE_U8);
   for (int y = 0; y < HEIGHT; y++)
     for (int x = 0; x < WIDTH; x++) {

@@ -17,6 +17,9 @@
 #define TIMES_OWN 2.
 #define OWN_PERCENTILE 90
 #define LEAST_UNLIKE .3
+/* Nothing goes unless something is half an octave beyond that: a texture that fills the picture has
+ * places a little beyond, too, and needs them. */
+#define LEAST_STEPS 4
 /* Each is compared with all samples. */
 #define MOST_PLACES (1 << 16)
 
@@ -83,6 +86,12 @@ static void compare_row(void *user, int row, int thread) {
   }
 }
 
+static bool anything_clear(const rc_places *places) {
+  for (int i = 0; i < places->columns * places->rows; i++)
+    if (places->unlike[i] >= LEAST_STEPS) return true;
+  return false;
+}
+
 recede_status rc_keep_alike(rc_context *context, const rc_band *band, const rc_image *images,
                             const rc_mask *flags, int levels, double *taken) {
   comparison c = {.sample_count = 0};
@@ -100,7 +109,7 @@ recede_status rc_keep_alike(rc_context *context, const rc_band *band, const rc_i
     c.most = (float)fmax(own, LEAST_UNLIKE * LEAST_UNLIKE *
                                   rc_source_variance(c.places.image, c.places.flags));
     RC_TRY(rc_parallel(context, c.places.rows, compare_row, &c));
-    RC_TRY(rc_places_take(context, &c.places, band, flags, taken));
+    if (anything_clear(&c.places)) RC_TRY(rc_places_take(context, &c.places, band, flags, taken));
   }
   rc_release(context, mark);
   return RECEDE_OK;
