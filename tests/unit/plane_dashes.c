@@ -80,6 +80,14 @@ static void end_where_they_end(void) {
     g_assert_cmpfloat(painted_right(0, SLANT_DEG, hole, "quality=draft").wrong, <, 20);
 }
 
+/* A row goes on at the viewer's feet, where its dashes are too large to be looked at: none of them
+ * is missing. */
+static void near_ones_are_not_missed(void) {
+  end = INFINITY;
+  paint p = painted_right(0, SLANT_DEG, (area){290, 90, 350, 130}, "surface=flat quality=draft");
+  g_assert_cmpfloat(p.right / p.all, >, .9);
+}
+
 /* A dash that is marked with little around it does not come back. */
 static void may_be_taken_away(void) {
   end = INFINITY;
@@ -139,6 +147,7 @@ int main(int argc, char **argv) {
   test_add_judged("/dashes/come-again", come_again);
   g_test_add_func("/dashes/horizon", correct_the_horizon);
   g_test_add_func("/dashes/end", end_where_they_end);
+  g_test_add_func("/dashes/near", near_ones_are_not_missed);
   g_test_add_func("/dashes/away", may_be_taken_away);
   g_test_add_func("/dashes/corner", lines_cut_corners);
   g_test_add_func("/dashes/walls", walls_have_none);

@@ -40,15 +40,6 @@ typedef struct chooser {
   int exponent;
 } chooser;
 
-static bool off_at(const chooser *c, double x, double y, double *off) {
-  int px = (int)floor(x + .5), py = (int)floor(y + .5);
-  if (!rc_inside(c->flags->width, c->flags->height, px, py) ||
-      !(*rc_flag(c->flags, px, py) & (RC_SOURCE | RC_ALLOWED)))
-    return false;
-  *off = (double)c->dashes->off[(size_t)py * (size_t)c->flags->width + (size_t)px];
-  return true;
-}
-
 /* The mean over a pixel of what lies (du, dv) away and so many px of the level farther. */
 static bool off_away(const chooser *c, int x, int y, double du, double dv, int right, int down,
                      double *off) {
@@ -58,7 +49,7 @@ static bool off_away(const chooser *c, int x, int y, double du, double dv, int r
     double px = x + (k % SAMPLES + .5) / SAMPLES - .5, py = y + (k / SAMPLES + .5) / SAMPLES - .5;
     if (!rc_ground_place(c->ground, c->exponent, px, py, &u, &v, &w) ||
         !rc_ground_px(c->ground, c->exponent, u + du, v + dv, &from_x, &from_y, &w) ||
-        !off_at(c, from_x + right, from_y + down, &here))
+        !rc_dashes_off(c->dashes, from_x + right, from_y + down, &here))
       return false;
     sum += here;
   }
@@ -75,7 +66,7 @@ static bool is_within(const chooser *c, const rc_dash_row *row, int n, int x, in
   double u, v, w;
   return rc_ground_place(c->ground, c->exponent, x, y, &u, &v, &w) &&
          fabs(rc_dash_along(row, u, v) - rc_dash_place(row, n)) < .5 * PART_ALONG * row->length &&
-         rc_dash_across(row, u, v) < .5 * PART_ACROSS * row->width;
+         fabs(rc_dash_across(row, u, v)) < .5 * PART_ACROSS * row->width;
 }
 
 static bool is_hidden(const chooser *c, const rc_dash_row *row, int n) {
@@ -93,9 +84,7 @@ static bool is_to_go(const chooser *c, const rc_dash_row *row, int n) {
     t *= row->length + 2 * AROUND * row->width, side *= (1 + 2 * AROUND) * row->width;
     double along = rc_dash_place(row, n) + t;
     bool own = fabs(t) < .5 * row->length && fabs(side) < .5 * row->width;
-    if (!rc_ground_px(c->ground, c->exponent, row->u + along * row->a - side * row->b,
-                      row->v + along * row->b + side * row->a, &x, &y, &w))
-      continue;
+    if (!rc_dash_px(c->ground, c->exponent, row, along, side, &x, &y, &w)) continue;
     int px = (int)floor(x + .5), py = (int)floor(y + .5);
     if (!rc_inside(c->flags->width, c->flags->height, px, py)) continue;
     all[own]++, hidden[own] += (*rc_flag(c->flags, px, py) & RC_TARGET) != 0;
@@ -112,7 +101,7 @@ static double misfit_of(const chooser *c, const rc_dash_row *row, int n, double 
   rc_box box = box_of(c, row, n);
   for (int y = box.y0; y < box.y1; y++)
     for (int x = box.x0; x < box.x1; x++) {
-      if (!is_within(c, row, n, x, y) || !off_at(c, x, y, &here)) continue;
+      if (!is_within(c, row, n, x, y) || !rc_dashes_off(c->dashes, x, y, &here)) continue;
       wanted++;
       if (!off_away(c, x, y, du, dv, right, down, &there)) continue;
       squares += (here - there) * (here - there), seen++;
@@ -151,8 +140,7 @@ static int collect(const rc_dash_rows *rows, const rc_dash_row *row, int n,
                    candidate candidates[RC_MOST_CANDIDATES]) {
   double x, y, w, there, t = rc_dash_place(row, n);
   int count = 0;
-  if (!rc_ground_px(&rows->ground, 0, row->u + t * row->a, row->v + t * row->b, &x, &y, &w))
-    return 0;
+  if (!rc_dash_px(&rows->ground, 0, row, t, 0, &x, &y, &w)) return 0;
   for (int i = 0; i < rows->count; i++) {
     const rc_dash_row *from = &rows->rows[i];
     if (!rc_dashes_alike(row, from->length, from->a, from->b)) continue;
@@ -206,13 +194,17 @@ static double end_of_others(const rc_dash_rows *rows, const rc_dash_row *row, do
 }
 
 /* Lanes end together: where all others are seen to, those do of which the hole or the distance
- * hides it. */
+ * hides it. But not before what is seen of them. */
 static void end_together(rc_dash_rows *rows) {
   for (int i = 0; i < rows->count; i++) {
     rc_dash_row *row = &rows->rows[i];
     double low = -end_of_others(rows, row, -1), high = end_of_others(rows, row, 1);
     if (!row->ends[0] && isfinite(low)) row->low = rc_dash_number(row, low);
     if (!row->ends[1] && isfinite(high)) row->high = rc_dash_number(row, high);
+    for (int k = 0; k < row->seen_count; k++) {
+      if (row->seen[k] < row->low) row->low = row->seen[k];
+      if (row->seen[k] > row->high) row->high = row->seen[k];
+    }
   }
 }
 

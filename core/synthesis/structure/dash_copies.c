@@ -16,9 +16,7 @@ rc_box rc_dash_box(const rc_ground *ground, const rc_dash_row *row, int n, int e
   for (int k = 0; k < 4; k++) {
     double t = rc_dash_place(row, n) + (k & 1 ? .5 : -.5) * times_along * row->length, x, y, w;
     double side = (k & 2 ? .5 : -.5) * times_across * row->width;
-    if (!rc_ground_px(ground, exponent, row->u + t * row->a - side * row->b,
-                      row->v + t * row->b + side * row->a, &x, &y, &w))
-      return (rc_box){0, 0, 0, 0};
+    if (!rc_dash_px(ground, exponent, row, t, side, &x, &y, &w)) return (rc_box){0, 0, 0, 0};
     low_x = fmin(low_x, x), high_x = fmax(high_x, x);
     low_y = fmin(low_y, y), high_y = fmax(high_y, y);
   }
@@ -36,10 +34,10 @@ static bool lies_in(const rc_ground *ground, const rc_dash_row *row, int n, doub
   double t = rc_dash_along(row, u, v), side = rc_dash_across(row, u, v);
   double most_side = .5 * times * row->width, most_off = .5 * times * row->length;
   /* The dash's place that is next to it. */
-  double due = rc_dash_place(row, n), sign = (v - row->v) * row->a < (u - row->u) * row->b ? -1 : 1;
-  t = fmin(fmax(t, due - most_off), due + most_off), side = sign * fmin(side, most_side);
-  return rc_ground_px(ground, 0, row->u + t * row->a - side * row->b,
-                      row->v + t * row->b + side * row->a, &dash_x, &dash_y, &w) &&
+  double due = rc_dash_place(row, n);
+  t = fmin(fmax(t, due - most_off), due + most_off);
+  side = fmin(fmax(side, -most_side), most_side);
+  return rc_dash_px(ground, 0, row, t, side, &dash_x, &dash_y, &w) &&
          (x - dash_x) * (x - dash_x) + (y - dash_y) * (y - dash_y) <= margin_px * margin_px;
 }
 
@@ -57,10 +55,7 @@ static void take(const rc_ground *ground, const rc_dash_row *row, int n, int exp
 void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *flags) {
   for (int i = 0; i < rows->count; i++) {
     const rc_dash_row *row = &rows->rows[i];
-    for (int k = 0; k < row->seen_count; k++)
-      take(&rows->ground, row, row->seen[k], exponent, flags);
-    for (int k = 0; k < row->laid_count; k++)
-      take(&rows->ground, row, row->laid[k].number, exponent, flags);
+    for (int n = row->low; n <= row->high; n++) take(&rows->ground, row, n, exponent, flags);
   }
 }
 
@@ -93,8 +88,8 @@ void rc_dash_rows_drop_lines(const rc_dash_rows *rows, rc_crossing *lines, int *
                                 &v[0], &w[0]) &&
                 rc_ground_place(&rows->ground, 0, (double)lines[i].bx, (double)lines[i].by, &u[1],
                                 &v[1], &w[1]) &&
-                rc_dash_across(row, u[0], v[0]) < row->width + MARGIN_PX / w[0] &&
-                rc_dash_across(row, u[1], v[1]) < row->width + MARGIN_PX / w[1];
+                fabs(rc_dash_across(row, u[0], v[0])) < row->width + MARGIN_PX / w[0] &&
+                fabs(rc_dash_across(row, u[1], v[1])) < row->width + MARGIN_PX / w[1];
     }
     if (!is_row) lines[kept++] = lines[i];
   }

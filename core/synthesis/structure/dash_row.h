@@ -13,12 +13,19 @@
 #define RC_DASHES_MOST_LONGER 1.6
 #define RC_DASHES_PARALLEL .99 /* cosine of 8 degrees */
 
-/* Of a place in the plane, how far it lies along the row's line, and off it. */
+/* Of a place in the plane, how far it lies along the row's line, and off it to its side. */
 static inline double rc_dash_along(const rc_dash_row *row, double u, double v) {
   return (u - row->u) * row->a + (v - row->v) * row->b;
 }
 static inline double rc_dash_across(const rc_dash_row *row, double u, double v) {
-  return fabs((v - row->v) * row->a - (u - row->u) * row->b);
+  return (v - row->v) * row->a - (u - row->u) * row->b;
+}
+/* The px of a level at a place so far along the row's line and off it, and its w. False: there is
+ * none. */
+static inline bool rc_dash_px(const rc_ground *ground, int exponent, const rc_dash_row *row,
+                              double along, double side, double *x, double *y, double *w) {
+  double u = row->u + along * row->a - side * row->b, v = row->v + along * row->b + side * row->a;
+  return rc_ground_px(ground, exponent, u, v, x, y, w);
 }
 /* Where along it the middle of the n-th is due, and which is due next to a place along it. */
 static inline double rc_dash_place(const rc_dash_row *row, int n) {

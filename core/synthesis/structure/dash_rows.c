@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "base/cholesky.h"
 #include "base/memory.h"
 #include "synthesis/structure/dash_row.h"
 
@@ -59,7 +60,7 @@ typedef struct looked {
 } looked;
 
 static bool lies_on(const rc_dash_row *row, const rc_dash *d) {
-  return rc_dash_across(row, d->u, d->v) < OFF_LINE * row->length + OFF_LINE_PX / d->w;
+  return fabs(rc_dash_across(row, d->u, d->v)) < OFF_LINE * row->length + OFF_LINE_PX / d->w;
 }
 
 /* Whether it is wholly seen where the row's n-th is due. */
@@ -73,8 +74,7 @@ static bool is_one_of(const finder *f, const rc_dash_row *row, const rc_dash *d,
   if (fabs(t - due) <= (f->drifts ? OFF_WHILE_DRIFTING : OFF_PERIOD) * period) return true;
   return fabs(t - due) <= MOST_OFF_PERIOD * period &&
          rc_ground_px(&f->ground, f->exponent, d->u, d->v, &x, &y, &w) &&
-         rc_ground_px(&f->ground, f->exponent, row->u + due * row->a, row->v + due * row->b, &due_x,
-                      &due_y, &w) &&
+         rc_dash_px(&f->ground, f->exponent, row, due, 0, &due_x, &due_y, &w) &&
          rc_distance(x - due_x, y - due_y) <= OFF_PLACE_PX;
 }
 
@@ -88,20 +88,13 @@ static void gather(const finder *f, rc_dash_row *row) {
   }
 }
 
-static bool is_seen(const finder *f, double x, double y) {
-  int px = (int)floor(x + .5), py = (int)floor(y + .5);
-  return rc_inside(f->flags->width, f->flags->height, px, py) &&
-         (*rc_flag(f->flags, px, py) & (RC_SOURCE | RC_ALLOWED));
-}
-
 /* Whether a row's n-th dash would be seen if it were there. */
 static bool would_be_seen(const finder *f, const rc_dash_row *row, int n) {
-  double x[3], y[3], w;
+  double x[3], y[3], w, off;
   for (int k = 0; k < 3; k++) {
     double t = rc_dash_place(row, n) + .5 * (k - 1) * row->length;
-    if (!rc_ground_px(&f->ground, f->exponent, row->u + t * row->a, row->v + t * row->b, &x[k],
-                      &y[k], &w) ||
-        !is_seen(f, x[k], y[k]))
+    if (!rc_dash_px(&f->ground, f->exponent, row, t, 0, &x[k], &y[k], &w) ||
+        !rc_dashes_off(&f->dashes, x[k], y[k], &off))
       return false;
   }
   return rc_distance(x[2] - x[0], y[2] - y[0]) >= LEAST_SEEN_PX;
@@ -123,10 +116,10 @@ static bool is_missing(const finder *f, const rc_dash_row *row, int n) {
 
 /* Counts what is seen, and stands out, at a place so far along the row and off it. */
 static void look(const finder *f, const rc_dash_row *row, double t, double side, looked *l) {
-  double u = row->u + t * row->a - side * row->b, v = row->v + t * row->b + side * row->a, x, y, w;
-  if (!rc_ground_px(&f->ground, f->exponent, u, v, &x, &y, &w) || !is_seen(f, x, y)) return;
-  int px = (int)floor(x + .5), py = (int)floor(y + .5);
-  double off = (double)f->dashes.off[(size_t)py * (size_t)f->dashes.width + (size_t)px];
+  double x, y, w, off;
+  if (!rc_dash_px(&f->ground, f->exponent, row, t, side, &x, &y, &w) ||
+      !rc_dashes_off(&f->dashes, x, y, &off))
+    return;
   l->seen++, l->stands_out += fabs(off) > PART_OF_CONTRAST * row->contrast;
 }
 
@@ -182,28 +175,6 @@ static bool find_ends(const finder *f, rc_dash_row *row) {
   return true;
 }
 
-/* Unknowns by least squares from sums of products, the fourth column the right side: the first
- * count. False: they are not told. */
-static bool solve(double m[3][4], int count) {
-  for (int k = 0; k < count; k++) {
-    int best = k;
-    for (int i = k + 1; i < count; i++)
-      if (fabs(m[i][k]) > fabs(m[best][k])) best = i;
-    for (int j = 0; j < 4; j++) {
-      double kept = m[k][j];
-      m[k][j] = m[best][j], m[best][j] = kept;
-    }
-    if (!(fabs(m[k][k]) > 1e-12)) return false;
-    for (int i = 0; i < count; i++) {
-      if (i == k) continue;
-      double times = m[i][k] / m[k][k];
-      for (int j = 0; j < 4; j++) m[i][j] -= times * m[k][j];
-    }
-  }
-  for (int k = 0; k < count; k++) m[k][3] /= m[k][k];
-  return true;
-}
-
 /* The line that its dashes lie on, a px of the picture being worth the same everywhere. */
 static void fit_line(const finder *f, rc_dash_row *row) {
   double weight = 0, mu = 0, mv = 0, uu = 0, uv = 0, vv = 0;
@@ -229,19 +200,21 @@ static void fit_line(const finder *f, rc_dash_row *row) {
 
 /* And where they are due along it: of the n-th of places t, t (1 + n drift) = first + n period. */
 static void fit_places(const finder *f, rc_dash_row *row) {
-  double m[3][4] = {{0}}, scale = row->period;
   int unknown = f->drifts && row->seen_count >= LEAST_DRIFTING ? 3 : 2;
+  double m[9] = {0}, v[3] = {0}, scale = row->period;
   for (int i = 0, n; i < f->dashes.count; i++) {
     const rc_dash *d = &f->dashes.found[i];
     if (!is_one_of(f, row, d, &n)) continue;
     double t = rc_dash_along(row, d->u, d->v) / scale, weight = d->w * d->w * d->w * d->w;
-    double terms[4] = {1, n, -n * t, t};
-    for (int k = 0; k < 3; k++)
-      for (int j = 0; j < 4; j++) m[k][j] += weight * terms[k] * terms[j];
+    double terms[3] = {1, n, -n * t};
+    for (int k = 0; k < unknown; k++) {
+      for (int j = 0; j < unknown; j++) m[k * unknown + j] += weight * terms[k] * terms[j];
+      v[k] += weight * terms[k] * t;
+    }
   }
-  if (!solve(m, unknown)) return;
-  row->first = m[0][3] * scale, row->period = m[1][3] * scale;
-  row->drift = unknown == 3 ? m[2][3] : 0;
+  if (!rc_factor(unknown, m)) return;
+  rc_substitute(unknown, m, v);
+  row->first = v[0] * scale, row->period = v[1] * scale, row->drift = v[2];
 }
 
 /* Takes in what it comes to explain. */

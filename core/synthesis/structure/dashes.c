@@ -70,7 +70,7 @@ static recede_status compare(rc_context *context, const finder *f) {
   for (int y = 0; y < height; y++) {
     for (int x = 0; x < width; x++) {
       float *off = &f->off[(size_t)y * (size_t)width + (size_t)x];
-      *off = 0;
+      *off = NAN;
       if (!is_looked_at(f, x, y)) continue;
       int reach = (int)((double)f->square_px * w_at(f, x, y));
       if (reach < LEAST_SQUARE_PX) reach = LEAST_SQUARE_PX;
@@ -92,7 +92,7 @@ static float usual_difference(const finder *f) {
   size_t pixels = (size_t)f->image->width * (size_t)f->image->height, step = pixels / SAMPLES + 1;
   int count = 0;
   for (size_t i = 0; i < pixels; i += step)
-    if (f->off[i] != 0.f) samples[count++] = fabsf(f->off[i]);
+    if (fabsf(f->off[i]) > 0.f) samples[count++] = fabsf(f->off[i]);
   if (!count) return INFINITY;
   qsort(samples, (size_t)count, sizeof *samples, rc_by_value);
   return samples[count / 2];
@@ -131,8 +131,7 @@ static moments collect(const finder *f, int32_t pixel) {
     bool cut = false;
     for (int y = hy - 1; y <= hy + 1; y++)
       for (int x = hx - 1; x <= hx + 1; x++) {
-        if (!rc_inside(width, f->image->height, x, y) ||
-            !(*rc_flag(f->flags, x, y) & (RC_SOURCE | RC_ALLOWED))) {
+        if (!rc_inside(width, f->image->height, x, y) || isnan(f->off[y * width + x])) {
           cut = true;
           continue;
         }

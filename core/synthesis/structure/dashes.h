@@ -2,6 +2,8 @@
 #ifndef RECEDE_SYNTHESIS_STRUCTURE_DASHES_H
 #define RECEDE_SYNTHESIS_STRUCTURE_DASHES_H
 
+#include <math.h>
+
 #include "image/image.h"
 #include "synthesis/structure/ground.h"
 
@@ -22,10 +24,18 @@ typedef struct rc_dash {
 
 typedef struct rc_dashes {
   int width, height; /* of the level */
-  float *off;        /* how far each pixel is from the mean around it; 0: not looked at */
+  float *off;        /* how far each pixel is from the mean around it; NAN: not looked at */
   rc_dash found[RC_MOST_DASHES];
   int count; /* 0 where there are too many */
 } rc_dashes;
+
+/* Of the pixel next to a place. False: it is not looked at. */
+static inline bool rc_dashes_off(const rc_dashes *dashes, double x, double y, double *off) {
+  int px = (int)floor(x + .5), py = (int)floor(y + .5);
+  if (!rc_inside(dashes->width, dashes->height, px, py)) return false;
+  *off = (double)dashes->off[(size_t)py * (size_t)dashes->width + (size_t)px];
+  return !isnan(*off);
+}
 
 /* In a level 2^exponent times coarser than the finest; only what is or was a source is looked at.
  */
