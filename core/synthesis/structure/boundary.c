@@ -103,14 +103,16 @@ static void drop_beside(const rc_mask *finest, int exponent, rc_crossing *lines,
 }
 
 /* The line with the greatest step among those that go on by themselves, of faint ones among those
- * that would be bands; false: there is none. Of the others the strongest band becomes *band, unless
- * that is one. */
-static bool choose(const coarsest *in, int coarser, const rc_seen *seen, const rc_chart *chart,
-                   float least, const rc_crossing *lines, int count, rc_crossing *best,
-                   rc_crossing *band) {
-  bool found = false;
+ * that would be bands; *found false: there is none. Of the others the strongest band becomes *band,
+ * unless that is one. */
+static recede_status choose(rc_context *context, const coarsest *in, int coarser,
+                            const rc_seen *seen, const rc_chart *chart, float least,
+                            const rc_crossing *lines, int count, rc_crossing *best,
+                            rc_crossing *band, bool *found) {
   const float least_of_any = least;
+  *found = false;
   for (int i = 0; i < count; i++) {
+    RC_TRY(rc_poll(context));
     rc_crossing c = lines[i], there = rc_crossing_coarser(c, coarser);
     float step = step_across(in, &there, 0);
     bool steps = step >= least, one_ground = step < least_of_any && !band->band;
@@ -120,11 +122,11 @@ static bool choose(const coarsest *in, int coarser, const rc_seen *seen, const r
     if (steps) c.band = false;
     rc_crossing_forget_chance(&c);
     if (steps)
-      *best = c, least = step, found = true;
+      *best = c, least = step, *found = true;
     else if (c.band)
       *band = c;
   }
-  return found;
+  return RECEDE_OK;
 }
 
 static rc_boundary boundary_of(const rc_chart *chart, const rc_crossing *c) {
@@ -231,8 +233,9 @@ static recede_status search(rc_context *context, const rc_image *images, const r
       drop_beside(&masks[0], exponent, lines, &count);
       faint = way > VARIES;
       rc_crossing another = {.band = band->band};
-      *found = choose(&in, last - exponent, &seen, &here, least, lines, count, &best, &another) &&
-               way != IS_EVEN;
+      RC_TRY(choose(context, &in, last - exponent, &seen, &here, least, lines, count, &best,
+                    &another, found));
+      if (way == IS_EVEN) *found = false; /* that is for bands */
       if (!band->band && another.band) {
         *band = rc_crossing_coarser(another, -exponent);
         band->faint = faint;

@@ -191,8 +191,9 @@ static bool end_at_each_other(work *w) {
 }
 
 /* Those that cross the hole in other directions. */
-static void add_crossing(const rc_crossing *all, int count, work *w) {
-  for (int i = 0; i < count && w->line_count < RC_MOST_LINES; i++) {
+static recede_status add_crossing(rc_context *context, const rc_crossing *all, int count, work *w) {
+  for (int i = 0; i < count && w->line_count < RC_ALL_LINES; i++) {
+    RC_TRY(rc_poll(context));
     rc_crossing c = all[i];
     loose a = {c.ax, c.ay, {0, 0}, 0, 0}, b = {c.bx, c.by, {0, 0}, 0, 0};
     if (is_continued(w, &a) || is_continued(w, &b) || c.as_strong > RC_MOST_AS_STRONG ||
@@ -201,6 +202,7 @@ static void add_crossing(const rc_crossing *all, int count, work *w) {
       continue;
     w->lines[w->line_count++] = c; /* not alone: rows of a chess board are no rails */
   }
+  return RECEDE_OK;
 }
 
 recede_status rc_branches_add(rc_context *context, const rc_image *image, const rc_mask *mask,
@@ -219,10 +221,10 @@ recede_status rc_branches_add(rc_context *context, const rc_image *image, const 
   w.reach_px = rc_longer_side(rc_box_of(mask, RC_TARGET));
   for (int i = 0; i < *count; i++) lines[i] = rc_crossing_coarser(lines[i], exponent);
   rc_lines_pair_up(&ends, RC_SURE_STRENGTH, all, &all_count);
-  add_crossing(all, all_count, &w);
+  RC_TRY(add_crossing(context, all, all_count, &w));
   collect(&ends, &w);
   while (w.line_count + 2 <= RC_ALL_LINES && (end_at_line(&w) || end_at_each_other(&w)))
-    ;
+    RC_TRY(rc_poll(context));
   *count = w.line_count;
   for (int i = 0; i < *count; i++) {
     lines[i] = rc_crossing_coarser(lines[i], -exponent);

@@ -140,7 +140,7 @@ static bool goes_on(const frame *f, float outwards, float x, float y, const rc_p
 
 /* How far the line reaches to each side at an end: from what stands out most in its middle on while
  * it is not yet as the ground is, which is the same on both sides. Where two grounds meet there is
- * no such thing. */
+ * no such thing. An end so far away that a pixel blurs it says nothing. */
 static void reach(const frame *f, float outwards, float x, float y, float reach_px[2]) {
   enum { FAR = REACH_SAMPLES };
   float values[2 * FAR + 1], *at = values + FAR, most = 0;
@@ -150,11 +150,11 @@ static void reach(const frame *f, float outwards, float x, float y, float reach_
                        RC_PROFILE_NEAR_PX, &at[o]))
       return;
   float left = (at[-FAR] + at[1 - FAR]) / 2, right = (at[FAR] + at[FAR - 1]) / 2;
-  float w = rc_chart_w(f->chart, x, y), unit = rc_ruler_px(f->chart, x, y) / w;
+  float w = rc_chart_w(f->chart, x, y), px = rc_ruler_px(f->chart, x, y), unit = px / w;
   float ground = (left + right) / 2;
   for (int o = -RC_PROFILE_HALF; o <= RC_PROFILE_HALF; o++)
     if (fabsf(at[o] - ground) > most) most = fabsf(at[o] - ground), middle = o;
-  if (!(w > 0) || fabsf(left - right) > MOST_OF_STEP * most) return;
+  if (!(w >= px) || fabsf(left - right) > MOST_OF_STEP * most) return;
   for (int side = 0; side < 2; side++) {
     int o = middle, step = side ? 1 : -1;
     while (abs(o) < FAR && fabsf(at[o] - ground) > LEAST_OF_LINE * most) o += step;

@@ -141,30 +141,34 @@ void rc_lines_pair_up(const rc_ends *ends, float least_strength, rc_crossing lin
           !rc_end_stands_out(ends, j, least_strength))
         continue;
       refine(ends, least_strength, &c);
+      if (c.strength < least_strength) continue;
       c.as_strong = rc_ends_as_strong(ends, &c);
-      if (c.strength >= least_strength) keep(lines, count, c);
+      keep(lines, count, c);
     }
   }
 }
 
 /* Keeps what can be continued, in px of the finest level. One must go on by itself, and vouches for
  * those parallel to it. */
-static void follow(const rc_seen *seen, const rc_chart *chart, int exponent,
-                   rc_crossing lines[RC_MOST_LINES], int *count) {
+static recede_status follow(rc_context *context, const rc_seen *seen, const rc_chart *chart,
+                            int exponent, rc_crossing lines[RC_MOST_LINES], int *count) {
   int kept = 0;
   bool alone = true;
   for (int i = 0; i < *count && alone; i++) {
     rc_crossing c = lines[i];
+    RC_TRY(rc_poll(context));
     alone = !rc_follow(seen, chart, rc_windows_of(&c, false), &c);
   }
   for (int i = 0; i < *count && !alone; i++) {
     rc_crossing c = lines[i];
+    RC_TRY(rc_poll(context));
     if (!rc_follow(seen, chart, 0, &c)) continue;
     rc_crossing_tell_band(&c, false);
     rc_crossing_forget_chance(&c);
     lines[kept++] = rc_crossing_coarser(c, -exponent);
   }
   *count = kept;
+  return RECEDE_OK;
 }
 
 const float *rc_brightness_axis(const rc_image *image) {
@@ -245,7 +249,7 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
   for (int i = 0; i < *count; i++)
     lines[i].alone = rc_stands_alone(&seen, &here, &lines[i], reach_px, periods ? here_by : NULL);
   rc_crossings_keep_parallel(&here, lines, count);
-  follow(&seen, &here, exponent, lines, count);
+  RC_TRY(follow(context, &seen, &here, exponent, lines, count));
   if (*count == 1 && lines->as_strong > RC_MOST_AS_STRONG) *count = 0;
   for (int i = 0; i < *count; i++) memcpy(lines[i].axis, axis, sizeof lines[i].axis);
   rc_release(context, mark);

@@ -27,8 +27,8 @@ recede_status rc_see_contrast(rc_context *context, rc_seen *seen) {
   int width = seen->flags->width, height = seen->flags->height;
   float *contrast;
   RC_TRY(RC_NEW_ZERO(context, (size_t)width * (size_t)height, &contrast));
-  for (int y = 1; y + 1 < height; y++)
-    for (int x = 1; x + 1 < width; x++) {
+  for (int y = 0; y < height; y++)
+    for (int x = 0; x < width; x++) {
       float sum = 0, square = 0, count = 0, value;
       for (int k = 0; k < 9; k++) {
         if (!rc_seen_source(seen, x - 1 + k % 3, y - 1 + k / 3, &value)) continue;
