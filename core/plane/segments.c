@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "base/spread.h"
 
 /* Weakest gradient, in values per px: twice what rounding to 8 bits can make. */
 #define LEAST_GRADIENT .02f
@@ -108,16 +109,13 @@ static bool fit_segment(const edge_map *map, int count, rc_segment *segment) {
   }
   sx /= count, sy /= count;
   xx = xx / count - sx * sx, yy = yy / count - sy * sy, xy = xy / count - sx * sy;
-  double half = sqrt((xx - yy) * (xx - yy) / 4 + xy * xy);
-  double longest = (xx + yy) / 2 + half, shortest = fmax((xx + yy) / 2 - half, 0);
-  double dx = xx > yy ? longest - yy : xy, dy = xx > yy ? xy : longest - xx;
-  double norm = sqrt(dx * dx + dy * dy);
-  if (norm == 0) return false;
+  rc_spread spread;
+  if (!rc_spread_of(xx, xy, yy, &spread)) return false;
   int longer = map->width > map->height ? map->width : map->height;
-  *segment = (rc_segment){(float)sx + .5f, (float)sy + .5f, (float)(dx / norm), (float)(dy / norm),
-                          (float)sqrt(12 * longest)};
+  *segment = (rc_segment){(float)sx + .5f, (float)sy + .5f, (float)spread.x, (float)spread.y,
+                          (float)sqrt(12 * spread.great)};
   return segment->length >= LEAST_LENGTH * (float)longer &&
-         longest >= LEAST_ASPECT * LEAST_ASPECT * shortest;
+         spread.great >= LEAST_ASPECT * LEAST_ASPECT * spread.little;
 }
 
 static int longer_first(const void *a, const void *b) {

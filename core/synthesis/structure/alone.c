@@ -37,8 +37,7 @@ static bool profile_of(const beside *at, rc_copy move, float outwards, rc_profil
 }
 
 static bool alike(const rc_profile *p, const rc_profile *q) {
-  float pp = rc_profile_dot(p, p), qq = rc_profile_dot(q, q), most = MOST_UNLIKE * MOST_UNLIKE;
-  return rc_profile_dot(p, q) > LEAST_LIKENESS * sqrtf(pp * qq) && pp < most * qq && qq < most * pp;
+  return rc_profiles_alike(p, q, LEAST_LIKENESS, MOST_UNLIKE);
 }
 
 /* How often it comes again, in places next to one another once, until that is too often; and how

@@ -4,6 +4,7 @@
 
 #include "base/cholesky.h"
 #include "base/memory.h"
+#include "base/spread.h"
 #include "synthesis/structure/dash_row.h"
 
 /* Dashes lie on their line within this part of their length, and so many px of the finest level. */
@@ -188,14 +189,12 @@ static void fit_line(const finder *f, rc_dash_row *row) {
       else
         weight += q, mu += q * du / weight, mv += q * dv / weight;
     }
-  double middle = (uu + vv) / 2, apart = sqrt((uu - vv) * (uu - vv) / 4 + uv * uv);
-  double a = uu > vv ? middle + apart - vv : uv, b = uu > vv ? uv : middle + apart - uu;
-  double norm = sqrt(a * a + b * b);
-  if (!(norm > 0)) return;
-  if (a * row->a + b * row->b < 0) norm = -norm;
+  rc_spread spread;
+  if (!rc_spread_of(uu, uv, vv, &spread)) return;
+  double sign = spread.x * row->a + spread.y * row->b < 0 ? -1 : 1;
   double shift = rc_dash_along(row, mu, mv); /* the new point's place along the old line */
   row->first -= shift, row->period -= shift * row->drift;
-  row->u = mu, row->v = mv, row->a = a / norm, row->b = b / norm;
+  row->u = mu, row->v = mv, row->a = sign * spread.x, row->b = sign * spread.y;
 }
 
 /* And where they are due along it: of the n-th of places t, t (1 + n drift) = first + n period. */

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/real.h"
+#include "base/spread.h"
 
 /* A pixel stands out if it is brighter than the mean of the square around it by more than so many
  * times the median difference, grain by chance in one of thousands, and by so much of white. */
@@ -153,18 +154,17 @@ static bool is_dash(const finder *f, const moments *m, rc_dash *dash) {
   if (m->pixels < LEAST_PIXELS) return false;
   double u = m->u / m->weight, v = m->v / m->weight;
   double uu = m->uu / m->weight - u * u, vv = m->vv / m->weight - v * v;
-  double uv = m->uv / m->weight - u * v, middle = (uu + vv) / 2;
-  double apart = sqrt((uu - vv) * (uu - vv) / 4 + uv * uv);
-  double a = uu > vv ? middle + apart - vv : uv, b = uu > vv ? uv : middle + apart - uu;
-  double length = sqrt(12 * (middle + apart)), width = sqrt(12 * fmax(middle - apart, 0));
-  double norm = sqrt(a * a + b * b);
-  if (!(norm > 0) || (!(m->cut > 0) && length < LEAST_ELONGATION * width)) return false;
+  double uv = m->uv / m->weight - u * v;
+  rc_spread spread;
+  if (!rc_spread_of(uu, uv, vv, &spread)) return false;
+  double length = sqrt(12 * spread.great), width = sqrt(12 * spread.little);
+  if (!(m->cut > 0) && length < LEAST_ELONGATION * width) return false;
   double x_px, y_px, w;
   if (!rc_ground_px(f->ground, 0, u, v, &x_px, &y_px, &w)) return false;
   *dash = (rc_dash){.u = u,
                     .v = v,
-                    .a = a / norm,
-                    .b = b / norm,
+                    .a = spread.x,
+                    .b = spread.y,
                     .length = length,
                     .width = width,
                     .w = w,
@@ -237,9 +237,7 @@ void rc_dashes_move(const rc_dashes *from, const rc_ground *old, const rc_ground
       u[k] = d.u + half * (k < 2 ? d.a : -d.b), v[k] = d.v + half * (k < 2 ? d.b : d.a);
       seen = seen && place_on(old, ground, &u[k], &v[k], &w);
     }
-    if (!seen || !place_on(old, ground, &d.cut_u, &d.cut_v, &w) ||
-        !place_on(old, ground, &d.u, &d.v, &d.w))
-      continue;
+    if (!seen || !place_on(old, ground, &d.u, &d.v, &d.w)) continue;
     d.length = rc_distance(u[1] - u[0], v[1] - v[0]),
     d.width = rc_distance(u[3] - u[2], v[3] - v[2]);
     d.a = (u[1] - u[0]) / d.length, d.b = (v[1] - v[0]) / d.length;

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/spread.h"
+
 /* A change's direction is that of the edge so far outwards. */
 #define FOLLOWED_PX 7.f
 /* A straight edge is told by so much of it, that lies in a wedge which begins with so many px to
@@ -89,13 +91,10 @@ static rc_change fit_edge(const rc_labels *f, const rc_change *c, float far_px) 
       }
     if (sum < 2) return line;
     x /= sum, y /= sum, xx = xx / sum - x * x, xy = xy / sum - x * y, yy = yy / sum - y * y;
-    /* The greater axis of what they spread by. */
-    double root = sqrt((xx - yy) * (xx - yy) / 4 + xy * xy), great = (xx + yy) / 2 + root;
-    double ux = xx > yy ? great - yy : xy, uy = xx > yy ? xy : great - xx;
-    double length = sqrt(ux * ux + uy * uy);
-    if (!(length > 0)) return line;
-    if (ux * (double)c->ux + uy * (double)c->uy < 0) length = -length;
-    line = (rc_change){(float)x, (float)y, (float)(ux / length), (float)(uy / length)};
+    rc_spread spread;
+    if (!rc_spread_of(xx, xy, yy, &spread)) return line;
+    double sign = spread.x * (double)c->ux + spread.y * (double)c->uy < 0 ? -1 : 1;
+    line = (rc_change){(float)x, (float)y, (float)(sign * spread.x), (float)(sign * spread.y)};
   }
   return line;
 }
@@ -181,7 +180,9 @@ static double off_straight(const trace *edge) {
     double dx = edge->x[i] - x, dy = edge->y[i] - y;
     xx += dx * dx / n, xy += dx * dy / n, yy += dy * dy / n;
   }
-  return sqrt(fmax((xx + yy) / 2 - sqrt((xx - yy) * (xx - yy) / 4 + xy * xy), 0));
+  rc_spread spread;
+  rc_spread_of(xx, xy, yy, &spread);
+  return sqrt(spread.little);
 }
 
 static bool fit_edges(const rc_labels *f, const rc_change *from, const rc_change *to, int reach,

@@ -55,7 +55,8 @@ rc_run rc_run_measure(const rc_seen *seen, float x, float y, float ux, float uy,
   rc_run p = {.strength = 0};
   const rc_mask *flags = seen->flags;
   int missing[RC_PROFILE] = {0};
-  float rows[RUN][RC_PROFILE], square[RC_PROFILE] = {0}, noise = 0, centre = 0, signal = 0;
+  float rows[RUN][RC_PROFILE], square[RC_PROFILE] = {0}, noise = 0;
+  float *mean = p.profile.mean, signal = 0;
   for (int k = 0; k < RUN; k++)
     for (int o = 0; o < RC_PROFILE; o++) {
       float along = outwards * (RC_PROFILE_FROM_PX + STEP_PX * (float)k);
@@ -70,19 +71,19 @@ rc_run rc_run_measure(const rc_seen *seen, float x, float y, float ux, float uy,
       }
       float value = seen->value[at];
       rows[k][o] = value;
-      p.mean[o] += value, square[o] += value * value;
+      mean[o] += value, square[o] += value * value;
     }
-  if (seen->without_crossings) leave_out_crossed(rows, missing, p.mean, square);
+  if (seen->without_crossings) leave_out_crossed(rows, missing, mean, square);
   for (int o = 0; o < RC_PROFILE; o++) {
     float count = (float)(RUN - missing[o]);
-    p.mean[o] /= count;
-    noise += square[o] / count - p.mean[o] * p.mean[o];
-    centre += p.mean[o] / RC_PROFILE;
+    mean[o] /= count;
+    noise += square[o] / count - mean[o] * mean[o];
+    p.profile.tone += mean[o] / RC_PROFILE;
   }
   for (int o = 0; o < RC_PROFILE; o++) {
-    p.mean[o] -= centre;
-    float change = o ? p.mean[o] - p.mean[o - 1] : 0;
-    signal += p.mean[o] * p.mean[o];
+    mean[o] -= p.profile.tone;
+    float change = o ? mean[o] - mean[o - 1] : 0;
+    signal += mean[o] * mean[o];
     p.clarity += middle[o] * change * change;
   }
   /* Neighbouring samples are alike: half of them count. */

@@ -10,7 +10,7 @@
 
 /* What a run looks like, read across it. */
 typedef struct rc_run {
-  float mean[RC_PROFILE];
+  rc_profile profile;
   float strength; /* signal to noise; 0: not enough known pixels */
   float clarity;  /* how much changes in its middle */
 } rc_run;

@@ -24,14 +24,11 @@
 #define REFINED_PLACES 17 /* 4 px to each side */
 
 static bool alike(const rc_run *a, const rc_run *b) {
-  float aa = 0, bb = 0, ab = 0, most = MOST_UNLIKE * MOST_UNLIKE;
-  for (int o = 0; o < RC_PROFILE; o++)
-    aa += a->mean[o] * a->mean[o], bb += b->mean[o] * b->mean[o], ab += a->mean[o] * b->mean[o];
-  return ab > LEAST_LIKENESS * sqrtf(aa * bb) && aa < most * bb && bb < most * aa;
+  return rc_profiles_alike(&a->profile, &b->profile, LEAST_LIKENESS, MOST_UNLIKE);
 }
 
 /* Its correlation with a step. */
-static float rise_of(const rc_run *p) {
+static float rise_of(const rc_profile *p) {
   float dot = 0, square = 1e-12f;
   for (int o = 0; o < RC_PROFILE; o++) {
     dot += o < RC_PROFILE_HALF ? -p->mean[o] : o > RC_PROFILE_HALF ? p->mean[o] : 0;
@@ -84,7 +81,7 @@ static void refine(const rc_ends *ends, float least_strength, rc_crossing *c) {
                            .bx = from.bx - q * uy,
                            .by = from.by + q * ux,
                            .strength = strength,
-                           .rise = rise_of(&a[i])};
+                           .rise = rise_of(&a[i].profile)};
       }
     if (c->strength == 0) return;
   }

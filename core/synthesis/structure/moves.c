@@ -18,16 +18,15 @@ static bool source_at(const void *user, int x, int y, float *value) {
   return (*rc_flag(m->flags, x, y) & RC_SOURCE) != 0;
 }
 
-rc_box rc_moves_all_of(const rc_mask *flags) { return (rc_box){0, 0, flags->width, flags->height}; }
-
-rc_box rc_moves_near_hole(const rc_mask *flags) {
+static rc_box near(const rc_mask *flags) {
   rc_box hole = rc_box_of(flags, RC_TARGET);
   return rc_box_grown(hole, rc_longer_side(hole) / 2, flags->width, flags->height);
 }
 
-void rc_moves_set(const rc_image *image, const rc_mask *flags, rc_chart chart, rc_box box,
+void rc_moves_set(const rc_image *image, const rc_mask *flags, rc_chart chart, bool near_hole,
                   const rc_boundary *beside, rc_moves *m) {
-  box = rc_box_common(box, rc_box_of(flags, RC_SOURCE)); /* they may be few, of a large picture */
+  rc_box box = rc_box_of(flags, RC_SOURCE); /* they may be few, of a large picture */
+  if (near_hole) box = rc_box_common(box, near(flags));
   *m = (rc_moves){image, flags, rc_chart_flat(chart), INFINITY, 0, {0}};
   if (box.x1 <= box.x0 || box.y1 <= box.y0) return;
   for (uint32_t n = 0; n < TRIES && m->count < RC_MOVES_POINTS; n++) {

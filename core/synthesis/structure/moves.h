@@ -20,11 +20,9 @@ typedef struct rc_moves {
   int32_t points[RC_MOVES_POINTS];
 } rc_moves;
 
-/* Where points may lie: anywhere, or within half of the hole's longer side from it. */
-rc_box rc_moves_all_of(const rc_mask *flags);
-rc_box rc_moves_near_hole(const rc_mask *flags);
-/* Sets those within the box. beside: only where its distance is positive; NULL: all. */
-void rc_moves_set(const rc_image *image, const rc_mask *flags, rc_chart chart, rc_box box,
+/* near_hole: within half of the hole's longer side from it. beside: only where its distance is
+ * positive; NULL: all. */
+void rc_moves_set(const rc_image *image, const rc_mask *flags, rc_chart chart, bool near_hole,
                   const rc_boundary *beside, rc_moves *moves);
 
 /* What one point changes by, squared, where the plane is moved by (a, b); NAN: that is not seen. */

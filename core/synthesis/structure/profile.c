@@ -55,3 +55,9 @@ float rc_profile_dot(const rc_profile *a, const rc_profile *b) {
   for (int o = 0; o < RC_PROFILE; o++) sum += a->mean[o] * b->mean[o];
   return sum;
 }
+
+bool rc_profiles_alike(const rc_profile *a, const rc_profile *b, float least_likeness,
+                       float most_unlike) {
+  float aa = rc_profile_dot(a, a), bb = rc_profile_dot(b, b), most = most_unlike * most_unlike;
+  return rc_profile_dot(a, b) > least_likeness * sqrtf(aa * bb) && aa < most * bb && bb < most * aa;
+}

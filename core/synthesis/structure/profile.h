@@ -40,5 +40,8 @@ typedef struct rc_profile {
 bool rc_profile_mean(const rc_ruler *ruler, float x, float y, float from, float step, int count,
                      rc_profile *profile);
 float rc_profile_dot(const rc_profile *a, const rc_profile *b);
+/* Whether they correlate by more than that, and neither has so many times the other's amplitude. */
+bool rc_profiles_alike(const rc_profile *a, const rc_profile *b, float least_likeness,
+                       float most_unlike);
 
 #endif

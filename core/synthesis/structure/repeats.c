@@ -20,7 +20,8 @@
 #define FARTHEST_PX (MOST_PERIOD_PX + MOST_PERIOD_PX / 2)
 #define ACROSS_PX 2.f
 
-/* What each point changes by moved so far; NAN: that is not seen. */
+/* What each point changes by moved so far, half of the least period or more; NAN: that is not
+ * seen. */
 typedef struct changes {
   int count; /* points, to both sides */
   float *of[FARTHEST_PX + 1];
@@ -66,7 +67,8 @@ static bool comes_again(const rc_moves *m, float a, float b, changes *c) {
 
 static recede_status repeats(rc_context *context, rc_moves *m, float a, float b, bool *result) {
   changes c = {.count = 2 * m->count};
-  for (int px = 0; px <= FARTHEST_PX; px++) RC_TRY(RC_NEW(context, c.count, &c.of[px]));
+  for (int px = LEAST_PERIOD_PX / 2; px <= FARTHEST_PX; px++)
+    RC_TRY(RC_NEW(context, c.count, &c.of[px]));
   *result = comes_again(m, a, b, &c);
   m->most_change = rc_moves_usual_change(m);
   *result = *result && comes_again(m, a, b, &c);
@@ -78,7 +80,7 @@ recede_status rc_repeats_near(rc_context *context, const rc_image *image, const 
   rc_moves *m;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, 1, &m));
-  rc_moves_set(image, flags, *chart, rc_moves_near_hole(flags), NULL, m);
+  rc_moves_set(image, flags, *chart, true, NULL, m);
   RC_TRY(repeats(context, m, a, b, result));
   rc_release(context, mark);
   return RECEDE_OK;
@@ -95,8 +97,8 @@ recede_status rc_repeats_beside(rc_context *context, const rc_image *images, con
   RC_TRY(RC_NEW(context, 1, &m));
   if (boundary->nx * (x - chart->x0) + boundary->ny * (y - chart->y0) + boundary->at < 0)
     b = rc_other_side(b);
-  rc_moves_set(&images[coarsest], &masks[coarsest], rc_chart_coarser(*chart, coarsest),
-               rc_moves_all_of(&masks[coarsest]), &b, m);
+  rc_moves_set(&images[coarsest], &masks[coarsest], rc_chart_coarser(*chart, coarsest), false, &b,
+               m);
   RC_TRY(repeats(context, m, d.a, d.b, result));
   rc_release(context, mark);
   return RECEDE_OK;
