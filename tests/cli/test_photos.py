@@ -122,5 +122,19 @@ def test_light_is_not_negative(folder):
     check((out != light).any(), "nothing was filled")
 
 
+def test_the_c_library_changes_nothing(folder):
+    """It chooses other code by processor, whose sines and powers have other last bits. Angles are
+    estimated by them."""
+    plain = "glibc.cpu.hwcaps=-AVX2,-AVX512F,-FMA,-AVX2_Usable,-FMA_Usable"
+    for name in "motorway", "roofs":
+        made = []
+        for environment in {}, {"GLIBC_TUNABLES": plain}:
+            out = folder / f"{name}-{len(made)}.png"
+            recede("fill", IMAGES / f"{name}.jpg", "--mask", IMAGES / f"{name}-mask.png", "-o", out,
+                   "-q", environment=environment)
+            made.append(out.read_bytes())
+        check(made[0] == made[1], name)
+
+
 if __name__ == "__main__":
     sys.exit(harness.main(globals()))
