@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* So far outside all taps are the edge's, and fixed point still holds it. */
+#define FARTHEST_PX 2097152.f
+
 static double cubic(double v) {
   v = fabs(v);
   return v < 1 ? (4 - 6 * v * v + 3 * v * v * v) / 6 : v < 2 ? (2 - v) * (2 - v) * (2 - v) / 6 : 0;
@@ -47,6 +50,7 @@ static void sample_inside(const float *taps_x, const float *taps_y, const float 
 
 void rc_sample(const rc_sampler *sampler, const rc_image *image, float x, float y, float *value) {
   int channels = image->channels, reach = RC_SPLINE_TAPS / 2 - 1;
+  x = fminf(fmaxf(x, -FARTHEST_PX), FARTHEST_PX), y = fminf(fmaxf(y, -FARTHEST_PX), FARTHEST_PX);
   int fixed_x = (int)floorf(x * RC_SPLINE_STEPS + .5f),
       fixed_y = (int)floorf(y * RC_SPLINE_STEPS + .5f);
   int step_x = fixed_x & (RC_SPLINE_STEPS - 1), step_y = fixed_y & (RC_SPLINE_STEPS - 1);

@@ -172,17 +172,18 @@ static recede_status find_least(rc_context *context, const laying *l) {
   return RECEDE_OK;
 }
 
-/* The mean of the neighbours that had a value before this pass. */
+/* The mean of the neighbours that had a value before this pass. Coarser levels have something there
+ * already, of what few known pixels are near. */
 static void continue_pixel(const rc_image *image, const uint8_t *passes, int pass, int x, int y) {
-  float *pixel = rc_pixel(image, x, y), count = 0;
+  float sum[3] = {0, 0, 0}, count = 0;
   for (int j = y - 1; j <= y + 1; j++)
     for (int i = x - 1; i <= x + 1; i++) {
       if (!rc_inside(image->width, image->height, i, j)) continue;
       if (passes[(size_t)j * (size_t)image->width + (size_t)i] >= pass) continue;
-      for (int k = 0; k < image->channels; k++) pixel[k] += rc_pixel(image, i, j)[k];
+      for (int k = 0; k < image->channels; k++) sum[k] += rc_pixel(image, i, j)[k];
       count++;
     }
-  for (int k = 0; k < image->channels && count > 0; k++) pixel[k] /= count;
+  for (int k = 0; k < image->channels && count > 0; k++) rc_pixel(image, x, y)[k] = sum[k] / count;
 }
 
 /* The spline weighs what lies beside a known pixel: where that is unknown it goes on as it is. */

@@ -128,6 +128,7 @@ static recede_status cut_out(rc_context *context, const steps *s, rc_box box, in
   int width = box.x1 - box.x0, height = box.y1 - box.y0, channels = s->filled->channels;
   double sum_x = 0, sum_y = 0, targets = 0;
   *part = *s->problem;
+  part->origin_x += box.x0, part->origin_y += box.y0;
   part->line.c = rc_w(&part->line, box.x0, box.y0);
   RC_TRY(rc_image_new(context, width, height, channels, &part->image));
   RC_TRY(rc_mask_new(context, width, height, &part->flags));

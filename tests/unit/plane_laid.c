@@ -258,6 +258,27 @@ static void transparent_is_filled(void) {
   for (int i = 0; i < 2; i++) picture_clear(&results[i]);
 }
 
+/* What is cut out leaves no bright edge, neither near nor far. */
+static void cut_out_has_no_fringe(void) {
+  enum { LONG = 4 * SIDE };
+  picture p = picture_new(SIDE, LONG, 4, RECEDE_U8),
+          none = picture_new(WIDTH, HEIGHT, 1, RECEDE_U8);
+  for (int y = 0; y < LONG; y++)
+    for (int x = 0; x < SIDE; x++)
+      for (int k = 0; k < 4; k++)
+        picture_set(&p, x, y, k, k < 3 ? .4f : (float)(hypot(x - 60, y % 30 - 15) > 11));
+  task t = task_new(p, "slant=75 exemplar=frontal quality=draft");
+  task_synthesize(&t, WIDTH, HEIGHT);
+  g_assert_cmpstr(t.message, ==, "");
+  /* The horizon is in row 13. */
+  moments all = moments_of(&t.result, &none, false, (area){0, 20, WIDTH, HEIGHT}, 0);
+  g_test_message("of .4: %.3f to %.3f", all.least, all.most);
+  g_assert_cmpfloat(all.least, >, .39);
+  g_assert_cmpfloat(all.most, <, .41);
+  task_clear(&t);
+  picture_clear(&none);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/laid/geometry", lies_as_the_plane_does);
@@ -266,5 +287,6 @@ int main(int argc, char **argv) {
   g_test_add_func("/laid/refused", what_tells_no_plane_is_refused);
   g_test_add_func("/laid/small", small_ones_are_laid);
   g_test_add_func("/laid/transparent", transparent_is_filled);
+  g_test_add_func("/laid/cut-out", cut_out_has_no_fringe);
   return g_test_run();
 }

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "synthesis/composition/misses.h"
 #include "synthesis/composition/relax.h"
+#include "synthesis/search/evaluate.h"
 
 /* What an edge between two pixels counts in the join: a tile takes its neighbour's tone on up to
  * its own joint, not across it. So within a copy an edge counts half where the copy changes as much
@@ -24,6 +25,7 @@
  * not shine, and what is off a little leaves no seam. */
 #define REACH_OF_THINGS_PX 3.f
 #define SWEEPS_OF_THINGS 8
+#define POLLED_PX 4096
 /* Sources finer than this many px per px across the tilt are sampled one level coarser. */
 #define MIP_AT 1.6f
 /* And of a level that is finer still along it so many samples are taken, of one px or a little more
@@ -52,10 +54,11 @@ typedef struct composition {
 
 static const int step_x[4] = {-1, 1, 0, 0}, step_y[4] = {0, 0, -1, 1};
 
+static bool is_known(const rc_level *level, size_t at) { return level->flags[at] & RC_KNOWN; }
+
 static bool is_fixed(const rc_level *level, int x, int y) {
-  if (!rc_inside(level->width, level->height, x, y)) return false;
-  return (level->flags[(size_t)y * (size_t)level->width + (size_t)x] & (RC_TARGET | RC_KNOWN)) ==
-         RC_KNOWN;
+  return rc_inside(level->width, level->height, x, y) &&
+         is_known(level, (size_t)y * (size_t)level->width + (size_t)x);
 }
 
 /* The texture that a copy puts at (x, y); false: it leads to nothing known. Flat copies are finer
@@ -66,8 +69,8 @@ static bool copy_value(const composition *c, rc_copy copy, int x, int y, float *
   float at_x = rc_level_x(c->level, x), at_y = rc_level_y(c->level, y), scale = 1.f;
   rc_place place = rc_copy_place(chart, copy, at_x, at_y);
   float across = place.ratio, along = chart->raised ? across : across * across;
-  bool known = !place.beyond && is_fixed(c->level, (int)rc_round(place.x + chart->x0),
-                                         (int)rc_round(place.y + chart->y0));
+  size_t source;
+  bool known = rc_place_at(c->level, &place, &source) && is_known(c->level, source);
   int mip = 0;
   for (; mip + 1 < c->mip_count && across * scale > MIP_AT; mip++) scale *= .5f;
   float wanted = along * scale + TAPS_ROUND; /* NaN where the copy leads beyond the horizon */
@@ -272,10 +275,12 @@ static void correct_row(void *user, int item, int thread) {
   (void)thread;
   for (int x = level->box.x0; x < level->box.x1; x++) {
     int parity = (x - level->box.x0) & 1, column = (x - level->box.x0) / 2;
+    bool is_target = rc_level_is_target(level, x, level->box.y0 + item);
     float *value = c->value + rc_level_at(level, x, level->box.y0 + item) * (size_t)c->channels;
     for (int k = 0; k < c->channels; k++) {
       float *solved = c->join.unknown + rc_half_row(&c->join, item, parity, k) + column;
-      value[k] += *solved, *solved = 0;
+      if (is_target) value[k] += *solved;
+      *solved = 0;
     }
   }
 }
@@ -313,6 +318,7 @@ static recede_status find_tone_of_misses(rc_context *context, composition *c) {
   RC_TRY(collect_border(context, c, border, &count));
   for (int round = 0; round < RC_MISS_ROUNDS; round++) {
     for (int i = 0; i < count; i++) {
+      if (i % POLLED_PX == 0) RC_TRY(rc_poll(context));
       int x = level->box.x0 + border[i] % level->box_w,
           y = level->box.y0 + border[i] / level->box_w;
       for (int e = 0; e < 4; e++)

@@ -17,6 +17,7 @@
 /* Where nothing is found for so many pixels of a row in succession every second is asked, then
  * every third: of pictures that end there are millions. */
 #define SKIPPED_AFTER 64
+#define POLLED_PX 4096
 
 typedef struct beside {
   rc_level *level;
@@ -48,22 +49,13 @@ static bool goes_on(const beside *b, rc_copy copy, int x, int y, float *price) {
   return *price < RC_NO_COST;
 }
 
-static float square_between(uint32_t p, uint32_t q) {
-  float sum = 0.f;
-  for (int shift = 0; shift < 24; shift += 8) {
-    float off = (float)(p >> shift & 255) - (float)(q >> shift & 255);
-    sum += off * off;
-  }
-  return sum;
-}
-
 /* By what a copy misses a known pixel; false: that is none, or it has nothing there. */
 static bool misses(const rc_level *level, rc_copy copy, int x, int y, float *miss) {
   size_t at = (size_t)y * (size_t)level->width + (size_t)x;
   rc_place place = place_of(level, copy, x, y);
   uint32_t pixel;
   if (!(level->flags[at] & RC_KNOWN) || !rc_place_pixel(level, &place, &pixel)) return false;
-  *miss = square_between(pixel, level->pixels[at]);
+  *miss = rc_pixels_square(pixel, level->pixels[at]);
   return true;
 }
 
@@ -126,11 +118,12 @@ static void give(beside *b, int x, int y, rc_copy copy, float price) {
   b->queue[b->end++] = y * b->level->width + x;
 }
 
-static void spread(beside *b) {
+static recede_status spread(rc_context *context, beside *b) {
   static const int dx[4] = {-1, 1, 0, 0}, dy[4] = {0, 0, -1, 1};
   const rc_level *level = b->level;
   float price;
   while (b->begin < b->end) {
+    if (b->begin % POLLED_PX == 0) RC_TRY(rc_poll(context));
     int32_t pixel = b->queue[b->begin++];
     int x = pixel % level->width, y = pixel / level->width;
     rc_copy copy = level->field[rc_level_at(level, x, y)];
@@ -138,6 +131,7 @@ static void spread(beside *b) {
       if (wants(b, x + dx[i], y + dy[i]) && goes_on(b, copy, x + dx[i], y + dy[i], &price))
         give(b, x + dx[i], y + dy[i], copy, price);
   }
+  return RECEDE_OK;
 }
 
 recede_status rc_take_beside(rc_context *context, rc_level *level, uint64_t key, bool whole) {
@@ -155,7 +149,7 @@ recede_status rc_take_beside(rc_context *context, rc_level *level, uint64_t key,
       if (rc_level_is_target(level, x, y) && !wants(&b, x, y))
         b.queue[b.end++] = y * level->width + x;
   }
-  spread(&b);
+  RC_TRY(spread(context, &b));
   for (int y = level->box.y0; y < level->box.y1; y++) {
     RC_TRY(rc_poll(context));
     int step = 1, failed = 0;
@@ -168,7 +162,7 @@ recede_status rc_take_beside(rc_context *context, rc_level *level, uint64_t key,
       step = 1 + failed / SKIPPED_AFTER;
       if (failed || !goes_on(&b, copy, x, y, &price)) continue;
       give(&b, x, y, copy, price);
-      spread(&b);
+      RC_TRY(spread(context, &b));
     }
   }
   rc_release(context, mark);

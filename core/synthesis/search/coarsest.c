@@ -80,7 +80,15 @@ static int work_of(int trials, int iterations) {
   return trials * part + better_half(trials) * (iterations - part);
 }
 
-/* Keeps the start that fits best, and its misfit. */
+/* Of a trial, which the level then holds. */
+static double price_of_broken_lines(const rc_descent *e, rc_level *level, const rc_trial *trial) {
+  rc_trial_restore(level, trial);
+  return PRICE_OF_BROKEN_LINES *
+         (1 - rc_lines_kept(level, e->lines, e->line_count, e->level_count - 1));
+}
+
+/* Keeps the start that fits best, which the level then holds, and what it costs: its misfit, and
+ * the lines that it breaks. */
 static recede_status try_starts(rc_context *context, const rc_descent *e, const starts *s,
                                 rc_pace *p, rc_level *level, rc_workspace *scratch, rc_trial *best,
                                 double *least) {
@@ -91,8 +99,8 @@ static recede_status try_starts(rc_context *context, const rc_descent *e, const 
   if (count == 1) { /* of large levels: no room for more */
     RC_TRY(start_once(context, e, s, s->first, level));
     RC_TRY(rc_iterate(context, e, exponent, s->first, 0, iterations, p, level, scratch));
-    *least = rc_misfit(level);
     rc_trial_save(level, best);
+    *least = rc_misfit(level) + price_of_broken_lines(e, level, best);
     return RECEDE_OK;
   }
   rc_block *mark = rc_mark(context);
@@ -118,15 +126,9 @@ static recede_status try_starts(rc_context *context, const rc_descent *e, const 
     *least = misfit;
     rc_trial_save(level, best);
   }
+  *least += price_of_broken_lines(e, level, best);
   rc_release(context, mark);
   return RECEDE_OK;
-}
-
-/* Of a trial, which the level then holds. */
-static double price_of_broken_lines(const rc_descent *e, rc_level *level, const rc_trial *trial) {
-  rc_trial_restore(level, trial);
-  return PRICE_OF_BROKEN_LINES *
-         (1 - rc_lines_kept(level, e->lines, e->line_count, e->level_count - 1));
 }
 
 /* The part of the targets that has no copy. */
@@ -170,7 +172,6 @@ static recede_status start_on_rails(rc_context *context, const rc_descent *e, in
   starts s = {first, first, first + count, NULL, 0};
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
   RC_TRY(try_starts(context, e, &s, p, level, scratch, best, own));
-  *own += price_of_broken_lines(e, level, best);
   /* Where few had a copy before half of these must have: an empty start fits well. */
   double most = fmin(without + MOST_WITHOUT_COPY, .5 * (1 + without));
   if (without_copy(level) > most) *own = INFINITY;
@@ -191,7 +192,6 @@ static recede_status keep_to_rails(rc_context *context, rc_descent *e, int count
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
   e->on_rails = true;
   RC_TRY(try_starts(context, e, &s, &p, level, scratch, &best, &own));
-  rc_trial_restore(level, &best);
   rc_release(context, mark);
   *kept = e->on_rails = without_copy(level) <= MOST_WITHOUT_KEPT;
   if (!*kept && level->board) RC_FREE(context, &level->board);
@@ -238,7 +238,6 @@ static recede_status try_lines(rc_context *context, rc_descent *e, const starts 
   RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(rc_lines_lock(context, e->lines, e->line_count, e->level_count - 1, level));
   RC_TRY(try_starts(context, e, s, p, level, scratch, &best, &own));
-  own += price_of_broken_lines(e, level, &best);
   e->continue_lines = own < favour_of(&e->lines[0]) * misfit;
   if (!e->continue_lines) RC_FREE(context, &level->locked);
   return RECEDE_OK;
@@ -264,7 +263,6 @@ static recede_status try_periods(rc_context *context, rc_descent *e, int first, 
   rc_reach_periods(level, &e->periods);
   level->chart.raised = false;
   RC_TRY(try_starts(context, e, &s, p, level, scratch, &by_periods, &own));
-  if (e->line_count) own += price_of_broken_lines(e, level, &by_periods);
   e->by_periods = own < favour_of_periods(&e->periods) * *misfit;
   if (e->by_periods)
     *misfit = own, *best = by_periods;
@@ -287,12 +285,8 @@ static recede_status try_lattice(rc_context *context, rc_descent *e, int first, 
   level->lattice = e->lattice;
   if (e->params->surface != RECEDE_SURFACE_RAISED) level->chart.raised = false;
   RC_TRY(try_starts(context, e, &s, p, level, scratch, &best, &own));
-  if (e->line_count) own += price_of_broken_lines(e, level, &best);
   e->on_lattice = own < FAVOUR_OF_LATTICE * misfit;
-  if (e->on_lattice)
-    rc_trial_restore(level, &best);
-  else
-    level->chart.raised = raised, level->lattice = (rc_lattice){.spacing = 1};
+  if (!e->on_lattice) level->chart.raised = raised, level->lattice = (rc_lattice){.spacing = 1};
   e->chart.raised = level->chart.raised;
   return RECEDE_OK;
 }
@@ -352,10 +346,8 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
                       rails_tried * work_of(on_rails, iterations)};
   RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(try_starts(context, e, &by_chance, &p, level, scratch, &best, &misfit));
-  if (e->line_count) misfit += price_of_broken_lines(e, level, &best);
   if (by_periods)
     RC_TRY(try_periods(context, e, trials, by_periods, &p, level, scratch, &best, &misfit));
-  if (on_rails) rc_trial_restore(level, &best);
   if (on_rails) RC_TRY(try_rails(context, e, trials, on_rails, &p, level, scratch, misfit));
   if (in_lattice) RC_TRY(try_lattice(context, e, trials, in_lattice, &p, level, scratch, misfit));
   if (e->line_count && !e->on_rails && !e->on_lattice && !e->by_periods)

@@ -49,6 +49,15 @@ bool rc_query_allows(const rc_level *level, const rc_query *query, rc_copy copy,
 static inline rc_place rc_query_place(const rc_level *level, const rc_query *query, rc_copy copy) {
   return rc_copy_place(&level->chart, copy, query->x, query->y);
 }
+/* How much two of a level's pixels differ by, squared, over all components. */
+static inline float rc_pixels_square(uint32_t p, uint32_t q) {
+  float sum = 0.f;
+  for (int k = 0; k < RC_COMPONENTS; k++) {
+    float off = (float)(p >> 8 * k & 255) - (float)(q >> 8 * k & 255);
+    sum += off * off;
+  }
+  return sum;
+}
 /* Price of ratio and mismatch alone; RC_NO_COST outside the allowed range. */
 float rc_place_price(float variance, const rc_place *place, float low, float high);
 /* The level's pixel nearest to a place; false when it lies outside the picture. */

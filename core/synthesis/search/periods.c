@@ -32,6 +32,7 @@ typedef struct bar {
   double most_beside; /* what lies beside the hole is off from its place in this, squared, of what
                          all vary by */
   bool unseen;        /* two are enough where a third one can not be seen */
+  bool lattice, due;  /* all that they lead to is asked, and what lies beside the hole */
 } bar;
 /* Drawn chess boards, hexagons, pavers, parquet and facades correlate by .6 to .98, and rise by .75
  * to 1.1. Dunes have .9 and 1, but one way. Beside the hole they are off by .1 to 1, bare ground
@@ -47,7 +48,8 @@ static const bar by_bars = {.bases = 8,
                             .cells = 3.f,
                             .whole = .65,
                             .most_off = .8,
-                            .most_beside = 1.2};
+                            .most_beside = 1.2,
+                            .lattice = true};
 /* Cells of which the picture shows two or three each way: what would confirm them may lie beyond
  * the lags looked at. In the mean .73 to .93, and beside the hole off by .2 to .54, where
  * gravel crosses roof tiles .7. */
@@ -59,7 +61,9 @@ static const bar by_cells = {.bases = 1,
                              .whole = .65,
                              .most_off = .65,
                              .most_beside = .6,
-                             .unseen = true};
+                             .unseen = true,
+                             .lattice = true,
+                             .due = true};
 /* What repeats one way, as the stripes of a crossing do, is due as clearly, and not as near. */
 static const bar by_row = {.bases = 1, .value = .85f, .rise = .8f, .most_beside = .6};
 #define LEAST_ROW_PX 5.f
@@ -76,7 +80,9 @@ static const bar by_joints = {.bases = 8,
                               .confirmed = .2f,
                               .cells = 6.f,
                               .most_off = .65,
-                              .most_beside = 1.6};
+                              .most_beside = 1.6,
+                              .lattice = true,
+                              .due = true};
 /* Of a lattice every place that its periods lead to correlates by so much: joints .21 to .52, walls
  * in courses, setts and boards less than .17. */
 #define LEAST_ON .2f
@@ -187,10 +193,12 @@ static void refine_base(const bar *b, const rc_peak *peaks, int count, rc_period
 
 /* How far what lies within so many px is brighter than a pixel, both known, up to so many
  * deviations; 0 elsewhere. */
-static void take_joints(const rc_level *level, const float *trait, float *joint) {
+static recede_status take_joints(rc_context *context, const rc_level *level, const float *trait,
+                                 float *joint) {
   enum { R = JOINTS_WITHIN_PX };
   double squares = 0, count = 0;
-  for (int y = 0; y < level->height; y++)
+  for (int y = 0; y < level->height; y++) {
+    RC_TRY(rc_poll(context));
     for (int x = 0; x < level->width; x++) {
       float sum = 0, seen = 0;
       size_t at = (size_t)y * (size_t)level->width + (size_t)x;
@@ -205,9 +213,11 @@ static void take_joints(const rc_level *level, const float *trait, float *joint)
       joint[at] = sum / seen - trait[at];
       squares += (double)(joint[at] * joint[at]), count++;
     }
+  }
   float most = count > 0 ? MOST_DEVIATIONS * (float)sqrt(squares / count) : 0;
   for (size_t i = 0; i < (size_t)level->width * (size_t)level->height; i++)
     joint[i] = fminf(fmaxf(joint[i], -most), most);
+  return RECEDE_OK;
 }
 
 static float highest_near(const rc_correlation *c, int dx, int dy) {
@@ -243,15 +253,15 @@ static bool is_lattice(const rc_correlation *c, const bar *b, const rc_periods *
   return mean[0] >= b->whole && off <= b->most_off * mean[0];
 }
 
-/* By the first base that is a lattice, if it has to be one, and due, if it has to be. */
+/* By the first base that is a lattice and due, if it has to be. */
 static bool find_regular(const rc_correlation *c, const bar *b, const rc_peak *peaks, int count,
-                         bool lattice, bool due, rc_periods *periods) {
+                         rc_periods *periods) {
   float length = 0;
   for (int n = 0; n < b->bases; n++) {
     if (!find_base(c, b, peaks, count, &length, periods)) break;
     refine_base(b, peaks, count, periods);
     periods->due = periods->due && holds_beside(c, b, periods);
-    if ((periods->due || !due) && (!lattice || is_lattice(c, b, periods))) return true;
+    if ((periods->due || !b->due) && (!b->lattice || is_lattice(c, b, periods))) return true;
   }
   periods->due = false;
   return false;
@@ -306,10 +316,10 @@ static recede_status find_by_joints(rc_context *context, rc_correlation *c, int 
   float *joint;
   const rc_level *level = c->level;
   RC_TRY(RC_NEW(context, (size_t)level->width * (size_t)level->height, &joint));
-  take_joints(level, c->trait, joint);
+  RC_TRY(take_joints(context, level, c->trait, joint));
   c->trait = joint;
   RC_TRY(rc_correlate(context, c, lag, &peaks, &count));
-  periods->by_joints = find_regular(c, &by_joints, peaks, count, true, true, periods);
+  periods->by_joints = find_regular(c, &by_joints, peaks, count, periods);
   periods->regular = periods->by_joints;
   periods->due = false; /* that is told by more than joints */
   return RECEDE_OK;
@@ -324,16 +334,14 @@ static recede_status find_by_all(rc_context *context, rc_correlation *c, int thi
   take_peaks(peaks, count, periods);
   *row = *periods;
   if (!regular) return RECEDE_OK;
-  periods->clear = find_regular(c, &by_bars, peaks, count, true, false, periods);
-  periods->regular =
-      periods->clear || find_regular(c, &by_all, peaks, count, false, false, periods);
+  periods->clear = find_regular(c, &by_bars, peaks, count, periods);
+  periods->regular = periods->clear || find_regular(c, &by_all, peaks, count, periods);
   if (periods->regular) return RECEDE_OK;
   find_row(c, peaks, count, row);
   if (!count || peaks[0].value < REPEATS || half <= third) return RECEDE_OK;
   RC_TRY(rc_correlate(context, c, half, &peaks, &count));
-  periods->clear = find_regular(c, &by_bars, peaks, count, true, false, periods);
-  periods->regular =
-      periods->clear || find_regular(c, &by_cells, peaks, count, true, true, periods);
+  periods->clear = find_regular(c, &by_bars, peaks, count, periods);
+  periods->regular = periods->clear || find_regular(c, &by_cells, peaks, count, periods);
   return RECEDE_OK;
 }
 

@@ -64,15 +64,6 @@ static int collect_ring(const rc_level *level, int step, int32_t *ring) {
   return ring ? (found + step - 1) / step : found;
 }
 
-static float squared_distance(uint32_t p, uint32_t q) {
-  float sum = 0.f;
-  for (int k = 0; k < RC_COMPONENTS; k++) {
-    float difference = (float)(p >> 8 * k & 255) - (float)(q >> 8 * k & 255);
-    sum += difference * difference;
-  }
-  return sum;
-}
-
 static void measure(void *user, int item, int thread) {
   const whole *w = user;
   const rc_level *level = w->level;
@@ -85,7 +76,7 @@ static void measure(void *user, int item, int thread) {
         rc_copy_place(&level->chart, c->copy, rc_level_x(level, x), rc_level_y(level, y));
     c->misfit[i] = NO_FIT * level->variance;
     if (!rc_place_pixel(level, &place, &pixel)) continue;
-    float misfit = squared_distance(pixel, level->pixels[w->ring[i]]);
+    float misfit = rc_pixels_square(pixel, level->pixels[w->ring[i]]);
     if (misfit >= c->misfit[i]) continue;
     misfit += rc_place_price(level->variance, &place, LEAST_RATIO, MOST_RATIO);
     if (misfit < c->misfit[i]) c->misfit[i] = misfit;
