@@ -52,6 +52,8 @@ void rc_span(rc_context *context, double from, double to);
 recede_status rc_progress(rc_context *context, double fraction);
 /* Cheap enough for inner loops of the calling thread: asks the host at most every 30 ms. */
 recede_status rc_poll(rc_context *context);
+/* Loops over single pixels, one after another, ask it every so many. */
+#define RC_POLLED_PX 4096
 static inline bool rc_cancelled(const rc_context *context) {
   return atomic_load_explicit(&context->cancelled, memory_order_relaxed) != 0;
 }

@@ -25,7 +25,6 @@
  * not shine, and what is off a little leaves no seam. */
 #define REACH_OF_THINGS_PX 3.f
 #define SWEEPS_OF_THINGS 8
-#define POLLED_PX 4096
 /* Sources finer than this many px per px across the tilt are sampled one level coarser. */
 #define MIP_AT 1.6f
 /* And of a level that is finer still along it so many samples are taken, of one px or a little more
@@ -318,7 +317,7 @@ static recede_status find_tone_of_misses(rc_context *context, composition *c) {
   RC_TRY(collect_border(context, c, border, &count));
   for (int round = 0; round < RC_MISS_ROUNDS; round++) {
     for (int i = 0; i < count; i++) {
-      if (i % POLLED_PX == 0) RC_TRY(rc_poll(context));
+      if (i % RC_POLLED_PX == 0) RC_TRY(rc_poll(context));
       int x = level->box.x0 + border[i] % level->box_w,
           y = level->box.y0 + border[i] / level->box_w;
       for (int e = 0; e < 4; e++)

@@ -17,7 +17,6 @@
 /* Where nothing is found for so many pixels of a row in succession every second is asked, then
  * every third: of pictures that end there are millions. */
 #define SKIPPED_AFTER 64
-#define POLLED_PX 4096
 
 typedef struct beside {
   rc_level *level;
@@ -123,7 +122,7 @@ static recede_status spread(rc_context *context, beside *b) {
   const rc_level *level = b->level;
   float price;
   while (b->begin < b->end) {
-    if (b->begin % POLLED_PX == 0) RC_TRY(rc_poll(context));
+    if (b->begin % RC_POLLED_PX == 0) RC_TRY(rc_poll(context));
     int32_t pixel = b->queue[b->begin++];
     int x = pixel % level->width, y = pixel / level->width;
     rc_copy copy = level->field[rc_level_at(level, x, y)];

@@ -12,8 +12,6 @@
 #define NEAR_PX 16
 /* Else sources are drawn from those nearest to the target's size, so many or more. */
 #define LEAST_SOURCES 256
-/* A cancel is looked for after so many pixels. */
-#define POLLED_PX 4096
 
 typedef struct rest {
   rc_level *level;
@@ -92,7 +90,7 @@ static recede_status spread(rc_context *context, rest *r) {
   static const int dx[4] = {-1, 1, 0, 0}, dy[4] = {0, 0, -1, 1};
   rc_level *level = r->level;
   while (r->begin < r->end) {
-    if (r->begin % POLLED_PX == 0) RC_TRY(rc_poll(context));
+    if (r->begin % RC_POLLED_PX == 0) RC_TRY(rc_poll(context));
     int32_t pixel = r->queue[r->begin++];
     int x = pixel % level->width, y = pixel / level->width;
     rc_copy copy = level->field[rc_level_at(level, x, y)];
