@@ -1,10 +1,12 @@
 #include "synthesis/composition/detail.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "image/distance.h"
+#include "synthesis/search/evaluate.h"
 
 /* Two bands: what a 5-tap binomial takes away, and what the same with holes takes from the rest. */
 #define BANDS 2
@@ -12,6 +14,11 @@
 #define LEAST_GAIN .8f
 #define MOST_GAIN 1.8f
 #define LEAST_PIXELS 200
+/* What is copied may have less detail than what lies around the hole, in squares. Of a texture it
+ * has .6 and more, for what is smooth fits more, and gets what lies around; with .4 and less it is
+ * another thing, bare sand among stones, and gets what it has itself. */
+#define TEXTURE_FROM .6
+#define OTHER_UP_TO .4
 /* The box is grown by this much, so that known pixels of each scale are measured too. */
 #define SURROUNDINGS_PX 160
 
@@ -76,10 +83,15 @@ static recede_status smooth(rc_context *context, bands *b, const float *in, size
   return rc_parallel(context, b->height, smooth_along, b);
 }
 
-/* Mean square of a band by class of w and side, in the hole and in known pixels. */
+/* Squares of a band by class of w and side: in the hole, in known pixels, and those the hole is
+ * copied from, in units of what known pixels of their class have. */
+typedef struct energy {
+  double sum;
+  long count;
+} energy;
+
 typedef struct energies {
-  double hole[RC_ALL_CLASSES], known[RC_ALL_CLASSES];
-  long hole_count[RC_ALL_CLASSES], known_count[RC_ALL_CLASSES];
+  energy hole[RC_ALL_CLASSES], known[RC_ALL_CLASSES], copied[RC_ALL_CLASSES];
 } energies;
 
 /* position: between the middles of the classes of its side. */
@@ -93,21 +105,22 @@ static int class_at(const rc_level *level, int x, int y, float *position) {
   return c < 0 ? 0 : c >= level->ranges.count ? level->ranges.count - 1 : c;
 }
 
-/* Squares are taken in strips of so many rows at once and then added pixel by pixel: sums in
- * another order would have other last bits. */
-#define STRIP_ROWS 64
+/* Each strip of so many rows has sums of its own, which are then added in order: sums in another
+ * order would have other last bits. */
+#define STRIP_ROWS 16
 #define HOLE 128 /* a class of pixels in the hole */
 #define NONE 255
 
-typedef struct strip {
+typedef struct measurement {
   const bands *bands;
   const rc_level *level;
   const float *fine, *coarse;
-  size_t fine_row; /* floats */
-  int first;
-  double *square; /* of each pixel of the strip */
-  uint8_t *group; /* of each pixel of the box: its class, + HOLE in the hole; or NONE */
-} strip;
+  size_t fine_row;  /* floats */
+  uint8_t *group;   /* of each pixel of the box: its class, + HOLE in the hole; or NONE */
+  energies *strips; /* each strip's */
+  int strip_count;
+  energies all;
+} measurement;
 
 static int side_at(const rc_level *level, int x, int y) {
   return rc_level_side(level, rc_level_x(level, x), rc_level_y(level, y));
@@ -125,58 +138,112 @@ static uint8_t group_at(const rc_level *level, int x, int y) {
 }
 
 static void group_row(void *user, int y, int thread) {
-  const strip *s = user;
-  const bands *b = s->bands;
-  uint8_t *group = s->group + (size_t)y * (size_t)b->width;
+  const measurement *m = user;
+  const bands *b = m->bands;
+  uint8_t *group = m->group + (size_t)y * (size_t)b->width;
   (void)thread;
-  for (int x = 0; x < b->width; x++) group[x] = group_at(s->level, b->box.x0 + x, b->box.y0 + y);
+  for (int x = 0; x < b->width; x++) group[x] = group_at(m->level, b->box.x0 + x, b->box.y0 + y);
 }
 
-static void measure_row(void *user, int item, int thread) {
-  const strip *s = user;
-  const bands *b = s->bands;
-  int y = s->first + item;
-  const float *fine = s->fine + (size_t)y * s->fine_row;
-  const float *coarse = s->coarse + (size_t)y * (size_t)b->width * (size_t)b->channels;
-  (void)thread;
-  for (int x = 0; x < b->width; x++) {
-    double sum = 0;
-    for (int k = 0; k < b->channels; k++) {
-      double d = (double)*fine++ - (double)*coarse++;
-      sum += d * d;
-    }
-    s->square[(size_t)item * (size_t)b->width + (size_t)x] = sum;
+/* x and y: in the box of the bands, here and below. */
+static double square_at(const measurement *m, int x, int y) {
+  int channels = m->bands->channels;
+  size_t row = (size_t)m->bands->width * (size_t)channels, at = (size_t)x * (size_t)channels;
+  const float *fine = m->fine + (size_t)y * m->fine_row + at;
+  const float *coarse = m->coarse + (size_t)y * row + at;
+  double sum = 0;
+  for (int k = 0; k < channels; k++) {
+    double d = (double)fine[k] - (double)coarse[k];
+    sum += d * d;
   }
+  return sum;
 }
 
-static recede_status measure(rc_context *context, strip *s, energies *e) {
-  const bands *b = s->bands;
-  memset(e, 0, sizeof *e);
-  for (s->first = 0; s->first < b->height; s->first += STRIP_ROWS) {
-    int rows = b->height - s->first < STRIP_ROWS ? b->height - s->first : STRIP_ROWS;
-    RC_TRY(rc_parallel(context, rows, measure_row, s));
-    const uint8_t *group = s->group + (size_t)s->first * (size_t)b->width;
-    for (size_t i = 0; i < (size_t)rows * (size_t)b->width; i++) {
-      int c = group[i] & (HOLE - 1);
-      if (group[i] == NONE) continue;
-      if (group[i] & HOLE)
-        e->hole[c] += s->square[i], e->hole_count[c]++;
-      else
-        e->known[c] += s->square[i], e->known_count[c]++;
-    }
+static bool enough(const energy *e) { return e->count >= LEAST_PIXELS; }
+static double mean(const energy *e) { return e->sum / (double)e->count; }
+
+static void add(energy *to, double square) {
+  to->sum += square;
+  to->count++;
+}
+
+static void add_hole_and_known(const measurement *m, energies *to, int x, int y) {
+  int group = m->group[(size_t)y * (size_t)m->bands->width + (size_t)x];
+  if (group == NONE) return;
+  add(group & HOLE ? &to->hole[group & (HOLE - 1)] : &to->known[group], square_at(m, x, y));
+}
+
+static void add_copied(const measurement *m, energies *to, int x, int y) {
+  const rc_level *level = m->level;
+  const bands *b = m->bands;
+  int group = m->group[(size_t)y * (size_t)b->width + (size_t)x], px = b->box.x0 + x,
+      py = b->box.y0 + y;
+  if (group == NONE || !(group & HOLE)) return;
+  rc_copy copy = level->field[rc_level_at(level, px, py)];
+  if (isnan(copy.a)) return;
+  rc_place place = rc_copy_place(&level->chart, copy, rc_level_x(level, px), rc_level_y(level, py));
+  if (!rc_place_px(level, &place, &px, &py)) return;
+  px -= b->box.x0, py -= b->box.y0;
+  if (!rc_inside(b->width, b->height, px, py)) return;
+  int there = m->group[(size_t)py * (size_t)b->width + (size_t)px];
+  if (there & HOLE) return; /* or NONE */
+  const energy *known = &m->all.known[there];
+  if (enough(known) && known->sum > 0)
+    add(&to->copied[group & (HOLE - 1)], square_at(m, px, py) / mean(known));
+}
+
+typedef void add_pixel(const measurement *m, energies *to, int x, int y);
+
+static void add_strip(const measurement *m, int strip, add_pixel *add_one) {
+  int end =
+      (strip + 1) * STRIP_ROWS < m->bands->height ? (strip + 1) * STRIP_ROWS : m->bands->height;
+  for (int y = strip * STRIP_ROWS; y < end; y++)
+    for (int x = 0; x < m->bands->width; x++) add_one(m, &m->strips[strip], x, y);
+}
+
+static void measure_strip(void *user, int strip, int thread) {
+  (void)thread;
+  add_strip(user, strip, add_hole_and_known);
+}
+
+static void measure_copied_strip(void *user, int strip, int thread) {
+  (void)thread;
+  add_strip(user, strip, add_copied);
+}
+
+static void add_all(energy to[RC_ALL_CLASSES], const energy of_strip[RC_ALL_CLASSES]) {
+  for (int c = 0; c < RC_ALL_CLASSES; c++)
+    to[c].sum += of_strip[c].sum, to[c].count += of_strip[c].count;
+}
+
+static recede_status measure(rc_context *context, measurement *m) {
+  memset(&m->all, 0, sizeof m->all);
+  memset(m->strips, 0, (size_t)m->strip_count * sizeof *m->strips);
+  RC_TRY(rc_parallel(context, m->strip_count, measure_strip, m));
+  for (int n = 0; n < m->strip_count; n++) {
+    add_all(m->all.hole, m->strips[n].hole);
+    add_all(m->all.known, m->strips[n].known);
   }
+  RC_TRY(rc_parallel(context, m->strip_count, measure_copied_strip, m));
+  for (int n = 0; n < m->strip_count; n++) add_all(m->all.copied, m->strips[n].copied);
   return RECEDE_OK;
 }
 
-static bool enough(const energies *e, int c) {
-  return e->hole_count[c] >= LEAST_PIXELS && e->known_count[c] >= LEAST_PIXELS;
+static bool comparable(const energies *e, int c) {
+  return enough(&e->hole[c]) && enough(&e->known[c]);
 }
 
 static float gain_of(const energies *e, int c) {
-  double hole = e->hole[c] / (double)e->hole_count[c];
-  double known = e->known[c] / (double)e->known_count[c];
-  float gain = hole > 0 ? (float)sqrt(known / hole) : 1.f;
-  return fminf(fmaxf(gain, LEAST_GAIN), MOST_GAIN);
+  if (!(e->hole[c].sum > 0)) return 1.f;
+  double square = mean(&e->known[c]) / mean(&e->hole[c]);
+  double copied = enough(&e->copied[c]) ? mean(&e->copied[c]) : 1;
+  if (copied < OTHER_UP_TO)
+    square *= copied;
+  else if (copied < TEXTURE_FROM)
+    square *= 1 - (1 - copied) * (TEXTURE_FROM - copied) / (TEXTURE_FROM - OTHER_UP_TO);
+  else if (copied > 1 && square < 1) /* what has more than lies around is not weakened for that */
+    square = fmin(square * copied, 1);
+  return fminf(fmaxf((float)sqrt(square), LEAST_GAIN), MOST_GAIN);
 }
 
 /* Where a path is as wide as the hole nothing of its own scale is known: it has the gain of its
@@ -184,11 +251,11 @@ static float gain_of(const energies *e, int c) {
 static void gains_of(const energies *e, const rc_ranges *ranges, float gains[RC_ALL_CLASSES]) {
   for (int c = 0; c < ranges->count * ranges->sides; c++) {
     int first = c / ranges->count * ranges->count, end = first + ranges->count;
-    gains[c] = enough(e, c) ? gain_of(e, c) : 1.f;
-    bool found = enough(e, c) || ranges->sides == 1;
+    gains[c] = comparable(e, c) ? gain_of(e, c) : 1.f;
+    bool found = comparable(e, c) || ranges->sides == 1;
     for (int off = 1; off < ranges->count && !found; off++)
       for (int other = c - off; other <= c + off && !found; other += 2 * off) {
-        found = other >= first && other < end && enough(e, other);
+        found = other >= first && other < end && comparable(e, other);
         if (found) gains[c] = gain_of(e, other);
       }
   }
@@ -239,29 +306,28 @@ recede_status rc_match_detail(rc_context *context, const rc_level *level, rc_ima
   bands b = {.box = rc_box_grown(level->box, SURROUNDINGS_PX, level->width, level->height),
              .channels = residual->channels};
   application a = {.bands = &b, .level = level, .residual = residual};
-  strip s = {.bands = &b, .level = level};
+  measurement m = {.bands = &b, .level = level};
   float *scratch;
   uint8_t *depth;
-  energies e;
   rc_block *mark = rc_mark(context);
   b.width = b.box.x1 - b.box.x0, b.height = b.box.y1 - b.box.y0;
   size_t row = (size_t)b.width * (size_t)b.channels, values = row * (size_t)b.height;
-  size_t strip_rows = b.height < STRIP_ROWS ? (size_t)b.height : STRIP_ROWS;
+  m.strip_count = (b.height + STRIP_ROWS - 1) / STRIP_ROWS;
   RC_TRY(RC_NEW(context, (size_t)level->width * (size_t)level->height, &depth));
   RC_TRY(RC_NEW(context, values, &scratch));
-  RC_TRY(RC_NEW(context, strip_rows * (size_t)b.width, &s.square));
-  RC_TRY(RC_NEW(context, (size_t)b.height * (size_t)b.width, &s.group));
-  RC_TRY(rc_parallel(context, b.height, group_row, &s));
-  s.fine = rc_pixel(residual, b.box.x0, b.box.y0);
-  s.fine_row = (size_t)residual->width * (size_t)b.channels;
+  RC_TRY(RC_NEW(context, m.strip_count, &m.strips));
+  RC_TRY(RC_NEW(context, (size_t)b.height * (size_t)b.width, &m.group));
+  RC_TRY(rc_parallel(context, b.height, group_row, &m));
+  m.fine = rc_pixel(residual, b.box.x0, b.box.y0);
+  m.fine_row = (size_t)residual->width * (size_t)b.channels;
   for (int n = 0; n < BANDS; n++) {
     RC_TRY(RC_NEW(context, values, &a.layers[n]));
     b.spacing = 1 << n;
-    RC_TRY(smooth(context, &b, s.fine, s.fine_row, scratch, a.layers[n]));
-    s.coarse = a.layers[n];
-    RC_TRY(measure(context, &s, &e));
-    gains_of(&e, &level->ranges, a.gains[n]);
-    s.fine = a.layers[n], s.fine_row = row;
+    RC_TRY(smooth(context, &b, m.fine, m.fine_row, scratch, a.layers[n]));
+    m.coarse = a.layers[n];
+    RC_TRY(measure(context, &m));
+    gains_of(&m.all, &level->ranges, a.gains[n]);
+    m.fine = a.layers[n], m.fine_row = row;
   }
   rc_distance_inside(level->flags, RC_TARGET, level->width, level->height, false, depth);
   a.depth = depth;
