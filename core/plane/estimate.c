@@ -35,7 +35,7 @@
 #define MOST_CHOSEN .7
 
 /* Of two points that are both farther than about 75 degrees from the view axis one is often not the
- * plane's: boards run across, and posts stand on them. */
+ * plane's: boards run across, and posts stand on them. A third, in front, tells it with either. */
 #define FAR_POINT .25
 
 #define GRID RC_COARSE_LEANS
@@ -69,11 +69,9 @@ static float *scratch_of(const search *s, int thread) {
 }
 
 static double cost_of_missing_points(const search *s, rc_lean lean) {
-  double n[3], cost = 1;
+  double n[3];
   rc_lean_normal(lean, n);
-  for (int i = 0; i < RC_VANISHING_POINTS; i++)
-    cost += MISSING_POINT_COST * s->r.points[i].support * rc_missed(&s->r.points[i], n);
-  return cost;
+  return 1 + MISSING_POINT_COST * rc_points_missed(&s->r, n);
 }
 
 static double cost_of(void *user, double across, double along) {
@@ -229,6 +227,8 @@ static void choose(search *s) {
   }
 }
 
+static bool is_far(const rc_vanishing *point) { return fabs(point->direction[2]) < FAR_POINT; }
+
 /* Looks for lines; a point's support becomes how far it counts. */
 static recede_status find_points(rc_context *context, search *s, const rc_image *image,
                                  const rc_mask *flags, const double on[2]) {
@@ -239,9 +239,9 @@ static recede_status find_points(rc_context *context, search *s, const rc_image 
     double counts = (s->r.points[i].support - LEAST_SUPPORT) / (FULL_SUPPORT - LEAST_SUPPORT);
     s->r.points[i].support = i < count ? fmin(1, fmax(0, counts)) : 0;
   }
-  if (fabs(s->r.points[0].direction[2]) < FAR_POINT &&
-      fabs(s->r.points[1].direction[2]) < FAR_POINT)
-    s->r.points[1].support = 0;
+  bool both_far = is_far(&s->r.points[0]) && is_far(&s->r.points[1]);
+  if (!both_far || is_far(&s->r.points[2])) s->r.points[2].support = 0;
+  if (both_far && s->r.points[2].support == 0) s->r.points[1].support = 0;
   return RECEDE_OK;
 }
 

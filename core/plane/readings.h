@@ -18,8 +18,11 @@ enum { RC_FLAT, RC_RAISED, RC_MODELS };
 typedef struct rc_readings {
   bool placed; /* a point is meant, and what lies beside it is asked, too */
   rc_homogeneity model[RC_MODELS];
-  rc_vanishing points[RC_VANISHING_POINTS]; /* support: 0..1, how far it counts */
-  float *weight;                            /* of each cell */
+  /* support: 0..1, how far it counts. Where the third does, the plane holds it, which lies in
+   * front, and one of the others, which both lie far off; else it holds the first and the second.
+   */
+  rc_vanishing points[RC_VANISHING_POINTS];
+  float *weight;  /* of each cell */
   float *scratch; /* one a thread: rc_homogeneity_cost's, then a float for each cell */
   rc_point closer[RC_MODELS][RC_STARTS], part[RC_PARTS];
   int best_model;
@@ -36,6 +39,8 @@ static inline double rc_missed(const rc_vanishing *point, const double normal[3]
   return miss * miss / (1 + miss * miss);
 }
 
+/* 0: the plane holds the points that count; else how much of them it is far from. */
+double rc_points_missed(const rc_readings *readings, const double normal[3]);
 /* The less, the likelier such a plane is in a picture, whatever this one shows. */
 double rc_times_unlikely(const rc_point *reading);
 /* Of the best reading, 0..1. */

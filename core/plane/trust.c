@@ -55,12 +55,21 @@ static double disagreement_deg(const rc_readings *s) {
   return sqrt(square);
 }
 
+static bool has_third(const rc_readings *s) { return s->points[2].support > 0; }
+
+double rc_points_missed(const rc_readings *s, const double normal[3]) {
+  double miss[RC_VANISHING_POINTS];
+  for (int i = 0; i < RC_VANISHING_POINTS; i++)
+    miss[i] = s->points[i].support * rc_missed(&s->points[i], normal);
+  return has_third(s) ? miss[2] + fmin(miss[0], miss[1]) : miss[0] + miss[1];
+}
+
 static double told_by_two_points(const rc_readings *s, const rc_point *reading) {
-  double n[3], told = 1;
+  double n[3], told[RC_VANISHING_POINTS];
   rc_lean_normal(rc_lean_of(reading), n);
   for (int i = 0; i < RC_VANISHING_POINTS; i++)
-    told = fmin(told, s->points[i].support * (1 - rc_missed(&s->points[i], n)));
-  return told;
+    told[i] = s->points[i].support * (1 - rc_missed(&s->points[i], n));
+  return has_third(s) ? fmin(told[2], fmax(told[0], told[1])) : fmin(told[0], told[1]);
 }
 
 /* The farthest other reading that explains the picture almost as well, and lines no worse. Where
@@ -95,12 +104,11 @@ static double share_on_plane(const rc_readings *s) {
 
 /* How far lines alone tell the plane. */
 static double told_by_lines(const rc_readings *s) {
-  const rc_vanishing *first = &s->points[0];
+  const rc_vanishing *one = &s->points[has_third(s) ? 2 : 0];
   double n[3];
   rc_lean_normal(rc_lean_of(&s->best), n);
-  double first_told = first->support * (1 - rc_missed(first, n));
-  return fmax(told_by_two_points(s, &s->best),
-              TOLD_BY_ONE_POINT * first_told * fabs(first->direction[2]));
+  double told = one->support * (1 - rc_missed(one, n)) * fabs(one->direction[2]);
+  return fmax(told_by_two_points(s, &s->best), TOLD_BY_ONE_POINT * told);
 }
 
 static double ramp(double value, double from, double to) {

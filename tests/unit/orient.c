@@ -138,6 +138,30 @@ static void posts_on_boards_are_no_wall(void) {
   g_free(q);
 }
 
+/* Below a wall of boards, seen from the front, a path and kerbs that run straight away. Most lines
+ * are upright, or run across, and meet nowhere in the picture. */
+static void a_path_before_a_wall_is_a_floor(void) {
+  enum { HORIZON = 250 }; /* px */
+  question *q = new_question();
+  for (int y = 0; y < SIDE; y++)
+    for (int x = 0; x < SIDE; x++) {
+      double across = (x - .5 * SIDE) / (y - HORIZON), nearest = floor(across / .45 + .5) * .45;
+      gboolean kerb = fabs(across - nearest) * (y - HORIZON) < 1.5 && fabs(nearest) < 2;
+      int board = x < SIDE / 2 ? x : y; /* upright ones on the left */
+      double wall = board % 12 < 2 ? 60 : 150 + 30 * chance(board / 12, x < SIDE / 2, 2);
+      double ground = kerb ? 60 : 150 + 30 * chance(x, y, 1);
+      q->gray[y * SIDE + x] = (guint8)(y < HORIZON + 12 ? wall : ground);
+    }
+  put_hole(q, 150, 300, 80, 50);
+  g_assert_cmpint(ask(q), ==, RECEDE_OK);
+  double slant = 90 - atan((.5 * SIDE - HORIZON) / (.5 * SIDE / tan(25 * G_PI / 180))) * 180 / G_PI;
+  g_test_message("slant %.1f tilt %.1f of %.1f, confidence %.2f", q->answer.slant_deg,
+                 q->answer.tilt_deg, slant, q->answer.confidence);
+  g_assert_cmpfloat(error_deg(&q->answer, slant, 0), <, 4);
+  g_assert_cmpfloat(q->answer.confidence, >, RECEDE_CONFIDENCE_LOW);
+  g_free(q);
+}
+
 /* The hole's plane is meant, whatever fills more of the picture. */
 static void a_wall_is_not_read_as_the_floor(void) {
   question *on_floor = new_question(), *on_wall = new_question();
@@ -273,6 +297,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/orient/horizon-inside", horizon_inside_the_picture);
   g_test_add_func("/orient/few-lines", few_lines_tell_what_many_do_not);
   g_test_add_func("/orient/posts", posts_on_boards_are_no_wall);
+  g_test_add_func("/orient/path", a_path_before_a_wall_is_a_floor);
   g_test_add_func("/orient/wall", a_wall_is_not_read_as_the_floor);
   g_test_add_func("/orient/meadow", a_meadow_is_no_wall);
   g_test_add_func("/orient/source-all", a_source_of_everything_is_none);
