@@ -9,14 +9,14 @@
 #define PAINT .9
 #define MARKING .25
 
-/* What the marking, which runs through the middle, is at right angles to. */
-static double cosine, sine;
+/* What the marking is at right angles to, and so many texels off the picture's middle. */
+static double cosine, sine, offset;
 
 /* Asphalt with grains and stains of all sizes. */
 static double road(double u, double v, int k) {
   double color = .35 + .01 * k;
   for (int n = 0; n < 4; n++) color += .08 * smooth_noise(u, v, 12. / (1 << n), 50 + n);
-  return fabs(u * cosine + v * sine) < MARKING / 2 ? PAINT : color;
+  return fabs(u * cosine + v * sine - offset) < MARKING / 2 ? PAINT : color;
 }
 
 static paint painted(double slant_deg, double tilt_deg, double direction_deg, area hole) {
@@ -77,9 +77,30 @@ static void get_wider(void) {
   g_assert_cmpfloat(part_right(scenes, G_N_ELEMENTS(scenes)), >, .7);
 }
 
+/* One that leads to the horizon beside the middle is several times narrower at one end of the hole
+ * than at the other, and at one end of a run beside it, too. */
+static void get_narrower(void) {
+  static const scene scenes[] = {
+      {76, 0, 0, {120, 110, 300, 240}}, {76, 0, 0, {100, 150, 260, 280}},
+      {78, 0, 0, {120, 130, 300, 260}}, {80, 0, 0, {150, 145, 330, 260}},
+      {80, 0, 0, {120, 150, 300, 300}}, {80, 0, 0, {60, 150, 240, 300}},
+      {82, 0, 0, {160, 170, 340, 270}}, {82, 0, 0, {140, 180, 320, 280}},
+      {84, 0, 0, {140, 195, 320, 300}}, {84, 0, 0, {160, 210, 300, 330}},
+  };
+  double sum = 0;
+  for (int i = 0; i < 2; i++) {
+    offset = -7 - 3 * i;
+    sum += part_right(scenes, G_N_ELEMENTS(scenes)) / 2;
+  }
+  offset = 0;
+  g_test_message("in the mean %.2f", sum);
+  g_assert_cmpfloat(sum, >, .7);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/markings/go-on", go_on);
   g_test_add_func("/markings/get-wider", get_wider);
+  test_add_judged("/markings/get-narrower", get_narrower);
   return g_test_run();
 }

@@ -15,6 +15,10 @@
 /* Of border pixels so near to each other the strongest is looked at. */
 #define APART_PX 2
 
+/* Where lines get narrower samples across are no nearer to each other, where wider no farther. */
+#define LEAST_APART_PX .5f
+#define MOST_APART_PX 3.f
+
 /* Of the change from one sample to the next. */
 static const float middle[RC_PROFILE] = {0, .2f, .6f, 1, 1, .6f, .2f};
 
@@ -51,18 +55,30 @@ static void leave_out_crossed(float rows[RUN][RC_PROFILE], int missing[RC_PROFIL
     }
 }
 
-rc_run rc_run_measure(const rc_seen *seen, float x, float y, float ux, float uy, float outwards) {
+/* How far from each other samples across lie, so far along the run: it gets wider and narrower as
+ * the ground does. */
+static float apart_px(const rc_seen *seen, float x, float y, float along_x, float along_y) {
+  if (!seen->narrows) return 1.f;
+  float px = rc_chart_w(seen->narrows, x + along_x, y + along_y) / rc_chart_w(seen->narrows, x, y);
+  return px < LEAST_APART_PX ? LEAST_APART_PX : px > MOST_APART_PX ? MOST_APART_PX : px;
+}
+
+/* between: samples are taken between the pixels where all four are sources. */
+static rc_run measure(const rc_seen *seen, float x, float y, float ux, float uy, float outwards,
+                      bool between) {
   rc_run p = {.strength = 0};
   const rc_mask *flags = seen->flags;
+  const rc_ruler ruler = {rc_seen_source, seen, ux, uy, NULL};
   int missing[RC_PROFILE] = {0};
   float rows[RUN][RC_PROFILE], square[RC_PROFILE] = {0}, noise = 0;
   float *mean = p.profile.mean, signal = 0;
-  for (int k = 0; k < RUN; k++)
+  for (int k = 0; k < RUN; k++) {
+    float along = outwards * (RC_PROFILE_FROM_PX + STEP_PX * (float)k);
+    float apart = apart_px(seen, x, y, ux * along, uy * along);
     for (int o = 0; o < RC_PROFILE; o++) {
-      float along = outwards * (RC_PROFILE_FROM_PX + STEP_PX * (float)k);
-      float across = (float)(o - RC_PROFILE_HALF);
-      int px = rc_floor(x + ux * along - uy * across + .5f);
-      int py = rc_floor(y + uy * along + ux * across + .5f);
+      float across = (float)(o - RC_PROFILE_HALF) * apart;
+      float at_x = x + ux * along - uy * across, at_y = y + uy * along + ux * across;
+      int px = rc_floor(at_x + .5f), py = rc_floor(at_y + .5f);
       size_t at = (size_t)py * (size_t)flags->width + (size_t)px;
       if (!rc_inside(flags->width, flags->height, px, py) || !(flags->data[at] & RC_SOURCE)) {
         if (++missing[o] > MOST_MISSING) return p;
@@ -70,9 +86,11 @@ rc_run rc_run_measure(const rc_seen *seen, float x, float y, float ux, float uy,
         continue;
       }
       float value = seen->value[at];
+      if (between) rc_ruler_sample(&ruler, at_x, at_y, &value);
       rows[k][o] = value;
       mean[o] += value, square[o] += value * value;
     }
+  }
   if (seen->without_crossings) leave_out_crossed(rows, missing, mean, square);
   for (int o = 0; o < RC_PROFILE; o++) {
     float count = (float)(RUN - missing[o]);
@@ -89,6 +107,15 @@ rc_run rc_run_measure(const rc_seen *seen, float x, float y, float ux, float uy,
   /* Neighbouring samples are alike: half of them count. */
   p.strength = signal / fmaxf(noise / (RUN / 2), 1e-6f);
   return p;
+}
+
+rc_run rc_run_measure(const rc_seen *seen, float x, float y, float ux, float uy, float outwards) {
+  return measure(seen, x, y, ux, uy, outwards, false);
+}
+
+float rc_run_fine_strength(const rc_seen *seen, float x, float y, float ux, float uy,
+                           float outwards) {
+  return measure(seen, x, y, ux, uy, outwards, true).strength;
 }
 
 static void search_border(void *user, int item, int thread) {

@@ -29,6 +29,9 @@ int rc_border_length(const rc_mask *flags);
 recede_status rc_ends_find(rc_context *context, const rc_seen *seen, rc_ends *ends);
 /* The run that begins at (x, y) and leaves along outwards u, read across u. */
 rc_run rc_run_measure(const rc_seen *seen, float x, float y, float ux, float uy, float outwards);
+/* Its strength, read between the pixels. */
+float rc_run_fine_strength(const rc_seen *seen, float x, float y, float ux, float uy,
+                           float outwards);
 /* Whether a border pixel has a line of this strength, and of those around it the strongest. */
 bool rc_end_stands_out(const rc_ends *ends, int item, float least_strength);
 /* Large stones have straight edges of 20 to 100, and one may by chance point at another: where

@@ -22,6 +22,8 @@
 #define GOES_ON_WINDOWS_SEEN_COARSER 1
 #define GOES_ON_PX 24
 #define LEAST_GOING_ON .75f
+/* Where a sure one is less than half as wide as beside the hole, it need not look the same. */
+#define LEAST_AS_WIDE .5f
 #define LEAST_OF_CONTRAST .02f /* of its square: less is another thing's slope */
 /* How far it reaches is looked for within so many samples to each side. Its grounds may differ by
  * so much of what stands out, and where less of that is left it ends. */
@@ -117,12 +119,20 @@ static bool pin(const frame *f, float outwards, float *x, float *y, rc_profile *
   return rc_profile_mean(&f->ruler, *x, *y, from, outwards, RC_PROFILE_NEAR_PX, own);
 }
 
+/* How many times as wide the ground is so far out as at an end. */
+static float as_wide(const frame *f, float x, float y, float outwards) {
+  return rc_chart_w(f->chart, x + outwards * f->ruler.ux, y + outwards * f->ruler.uy) /
+         rc_chart_w(f->chart, x, y);
+}
+
 /* Where the picture or the source ends, so may the line. */
 static bool goes_on(const frame *f, float outwards, float x, float y, const rc_profile *own) {
   float square = rc_profile_dot(own, own);
+  bool sure = f->line->strength >= RC_SURE_STRENGTH;
   for (int k = 0; k < f->windows; k++) {
     float most = -1, from = RC_PROFILE_FROM_PX + GOES_ON_PX * (float)k;
     bool known = false;
+    if (sure && as_wide(f, x, y, outwards * (from + GOES_ON_PX / 2.f)) < LEAST_AS_WIDE) break;
     for (float across = -PINNED_WITHIN_PX; across <= PINNED_WITHIN_PX; across += .5f) {
       rc_profile here;
       if (!rc_profile_mean(&f->ruler, x - f->ruler.uy * across, y + f->ruler.ux * across,

@@ -16,6 +16,9 @@
 #define MOST_UNLIKE 4.f
 #define STRAIGHT .9945f /* cosine of 6 degrees: both runs and what connects them */
 #define SHORTEST_PX 12.f
+/* Runs beside the hole get narrower with the ground where w is so many times as much at one end of
+ * it. Else that would only blur what is seen. */
+#define LEAST_NARROWING 2.f
 /* Of a marking wider than half a profile both edges are kept. */
 #define LEAST_RISE .8f
 #define LEAST_INSIDE .7f /* of a line between its ends */
@@ -87,6 +90,15 @@ static void refine(const rc_ends *ends, float least_strength, rc_crossing *c) {
   }
 }
 
+/* A thin line seen by whole pixels seems to wobble, and where lines get narrower all do. */
+static void look_closer(const rc_seen *seen, rc_crossing *c) {
+  float dx = c->bx - c->ax, dy = c->by - c->ay, length = sqrtf(dx * dx + dy * dy);
+  float ux = dx / length, uy = dy / length;
+  if (!seen->narrows) return;
+  c->strength = fmaxf(c->strength, fminf(rc_run_fine_strength(seen, c->ax, c->ay, ux, uy, -1),
+                                         rc_run_fine_strength(seen, c->bx, c->by, ux, uy, 1)));
+}
+
 static bool run_into_one_another(const rc_crossing *p, const rc_crossing *q) {
   return rc_crossing_distance(p, q->ax, q->ay) <= RC_PROFILE ||
          rc_crossing_distance(p, q->bx, q->by) <= RC_PROFILE;
@@ -140,6 +152,7 @@ void rc_lines_pair_up(const rc_ends *ends, float least_strength, rc_crossing lin
       refine(ends, least_strength, &c);
       if (c.strength < least_strength) continue;
       c.as_strong = rc_ends_as_strong(ends, &c);
+      look_closer(&ends->picture, &c);
       keep(lines, count, c);
     }
   }
@@ -226,6 +239,17 @@ static recede_status find_crossed(rc_context *context, rc_seen *seen,
   return RECEDE_OK;
 }
 
+/* Whether what leads away from the viewer is much narrower at one end of the hole. */
+static bool get_narrower(const rc_chart *chart, const rc_box *hole) {
+  float least = INFINITY, most = 0;
+  for (int k = 0; k < 4; k++) {
+    int x = k & 1 ? hole->x0 : hole->x1, y = k & 2 ? hole->y0 : hole->y1;
+    float w = rc_chart_w(chart, (float)x, (float)y);
+    least = fminf(least, w), most = fmaxf(most, w);
+  }
+  return most > LEAST_NARROWING * least;
+}
+
 recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc_mask *mask,
                             int exponent, bool corners, const rc_chart *chart,
                             const rc_copy periods[2], rc_crossing lines[RC_MOST_LINES],
@@ -233,12 +257,14 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
   const float *axis = rc_brightness_axis(image);
   rc_seen seen;
   rc_block *mark = rc_mark(context);
+  rc_chart here = rc_chart_coarser(*chart, exponent);
+  rc_box hole = rc_box_of(mask, RC_TARGET);
+  int reach_px = rc_longer_side(hole);
   RC_TRY(rc_see(context, image, mask, axis, &seen));
+  if (get_narrower(&here, &hole)) seen.narrows = &here;
   RC_TRY(rc_lines_at(context, &seen, false, lines, count));
   RC_TRY(find_crossed(context, &seen, lines, count));
   if (corners) rc_crossings_keep_corners(mask, lines, count);
-  rc_chart here = rc_chart_coarser(*chart, exponent);
-  int reach_px = rc_longer_side(rc_box_of(mask, RC_TARGET));
   rc_copy here_by[2];
   for (int k = 0; periods && k < 2; k++)
     here_by[k] =

@@ -19,7 +19,7 @@ recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *
   RC_TRY(RC_NEW_ZERO(context, pixels, &value));
   for (size_t i = 0; i < pixels; i++)
     for (size_t k = 0; k < channels; k++) value[i] += axis[k] * image->data[i * channels + k];
-  *seen = (rc_seen){flags, value, false};
+  *seen = (rc_seen){flags, value, false, NULL};
   return RECEDE_OK;
 }
 

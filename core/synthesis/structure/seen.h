@@ -3,11 +3,15 @@
 #define RECEDE_SYNTHESIS_STRUCTURE_SEEN_H
 
 #include "image/image.h"
+#include "synthesis/copy.h"
 
 typedef struct rc_seen {
   const rc_mask *flags;
   const float *value;
   bool without_crossings; /* rc_run_measure leaves out what crosses a run */
+  /* The level's, where lines get so much narrower towards the horizon that a run must, too; else
+   * NULL. */
+  const rc_chart *narrows;
 } rc_seen;
 
 /* Of an rc_seen; false: (x, y) is no source. */
