@@ -9,8 +9,9 @@ gboolean rp_host_is_there(const rp_host *host) {
   return gimp_image_is_valid(host->image) && gimp_item_is_valid(host->drawable);
 }
 
-/* A group's lock holds for all that lies in it. */
+/* A group's lock holds for all that lies in it, a layer's for its mask. */
 static gboolean is_locked(gint32 item) {
+  if (gimp_item_is_layer_mask(item)) item = gimp_layer_from_mask(item);
   for (; item >= 0; item = gimp_item_get_parent(item))
     if (gimp_item_get_lock_content(item)) return TRUE;
   return FALSE;

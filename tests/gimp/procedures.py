@@ -119,6 +119,10 @@ def errors(host):
            f"(define g (car {new_group(host)}))(gimp-image-insert-layer i g 0 0)"
            "(gimp-image-reorder-item i d g 0)(gimp-item-set-lock-content g TRUE)" + select
            + host.fill(**frontal), "group around it, are locked")
+    mask = "(car (gimp-layer-create-mask d ADD-MASK-WHITE))"
+    yield ("the mask of a locked layer",
+           f"(define m {mask})(gimp-layer-add-mask d m)(gimp-item-set-lock-content d TRUE)"
+           + select + host.fill(layer="m", **frontal), "are locked")
     yield ("floating", select + ("(gimp-edit-copy d)(define f (car (gimp-edit-paste d TRUE)))"
                                  if host.name == "2" else
                                  "(gimp-edit-copy (vector d))"
