@@ -31,7 +31,7 @@ struct rp_panel {
   rp_watch watch;   /* of the run that OK asks for */
   gboolean setting; /* the panel itself is moving the controls */
   gboolean refused; /* why is what the panel says */
-  GtkWidget *box, *area, *row, *controls, *shows[SHOWS], *estimate_button;
+  GtkWidget *box, *area, *shows[SHOWS], *estimate_button;
 };
 
 static void say(rp_panel *panel, const char *text) {
@@ -213,7 +213,7 @@ static void renew_scene(rp_panel *panel) {
 }
 
 void rp_panel_changed(rp_panel *panel, const char *key) {
-  if (panel->setting) return;
+  if (panel->setting || panel->watch.worker) return;
   if (strcmp(key, "exemplar") == 0 || strcmp(key, "width") == 0 || strcmp(key, "height") == 0) {
     renew_scene(panel);
     if (strcmp(key, "exemplar") == 0) renew_estimate(panel);
@@ -226,6 +226,7 @@ void rp_panel_changed(rp_panel *panel, const char *key) {
 }
 
 void rp_panel_changed_all(rp_panel *panel) {
+  if (panel->watch.worker) return;
   renew_scene(panel);
   explain(panel);
   if (panel->settings->procedure == RP_FILL) take_source(panel);
@@ -233,8 +234,8 @@ void rp_panel_changed_all(rp_panel *panel) {
   renew_estimate(panel);
 }
 
-/* The user works on while the dialog is open: selects something else, moves or crops the layer. Why
- * it cannot be filled now; NULL: it can. */
+/* The user works on while the dialog is open: paints, selects something else, moves or crops the
+ * layer. Why it cannot be filled now; NULL: it can. */
 static const char *read_anew(rp_panel *panel) {
   rp_procedure procedure = panel->settings->procedure;
   rp_picture picture;
@@ -299,8 +300,7 @@ static void build(rp_panel *panel) {
   panel->box = rp_ui_box(GTK_ORIENTATION_VERTICAL, 6);
   panel->area = rp_preview_new(&panel->scene, on_dragged, panel);
   gtk_box_pack_start(GTK_BOX(panel->box), panel->area, TRUE, TRUE, 0);
-  panel->row = show_row(panel);
-  gtk_box_pack_start(GTK_BOX(panel->box), panel->row, FALSE, FALSE, 0);
+  gtk_box_pack_start(GTK_BOX(panel->box), show_row(panel), FALSE, FALSE, 0);
   gtk_box_pack_start(GTK_BOX(panel->box), status_lines(panel), FALSE, FALSE, 0);
   panel->watch.progress = gtk_progress_bar_new();
   gtk_box_pack_start(GTK_BOX(panel->box), panel->watch.progress, FALSE, FALSE, 0);
@@ -347,9 +347,8 @@ static gboolean on_focus(GtkWidget *dialog, GdkEvent *event, gpointer user) {
   return FALSE;
 }
 
-void rp_panel_attach(rp_panel *panel, GtkWidget *dialog, GtkWidget *controls) {
+void rp_panel_attach(rp_panel *panel, GtkWidget *dialog) {
   panel->watch.dialog = dialog;
-  panel->controls = controls;
   gtk_widget_set_size_request(panel->area, PREVIEW_WIDTH, PREVIEW_HEIGHT);
   rp_ui_open_so_large(dialog);
   gtk_widget_set_size_request(panel->area, LEAST_WIDTH, LEAST_HEIGHT);
@@ -365,23 +364,17 @@ void rp_panel_free(rp_panel *panel) {
 
 /* -------------------------------------------------------------------------------------- run -- */
 
-static void set_sensitive(rp_panel *panel, gboolean sensitive) {
-  gtk_widget_set_sensitive(panel->area, sensitive);
-  gtk_widget_set_sensitive(panel->row, sensitive);
-  gtk_widget_set_sensitive(panel->controls, sensitive);
-  gtk_dialog_set_response_sensitive(GTK_DIALOG(panel->watch.dialog), GTK_RESPONSE_OK, sensitive);
-  gtk_dialog_set_response_sensitive(GTK_DIALOG(panel->watch.dialog), RP_RESPONSE_RESET, sensitive);
-}
-
+/* The result is written as the settings were when OK was pressed, whatever changes them meanwhile.
+ */
 gboolean rp_panel_compute(rp_panel *panel, rp_request *request) {
   char *message = NULL;
   if (!can_fill(panel, TRUE)) return FALSE;
   rp_draft_stop(&panel->draft);
   stop_estimate(panel);
-  set_sensitive(panel, FALSE);
-  rp_outcome outcome = rp_compute(panel->host, panel->settings, panel->picture, request,
-                                  rp_watch_run, &panel->watch, &message);
-  set_sensitive(panel, TRUE);
+  rp_settings asked = *panel->settings;
+  rp_outcome outcome = rp_compute(panel->host, &asked, panel->picture, request, rp_watch_run,
+                                  &panel->watch, &message);
+  if (outcome == RP_DONE) *panel->settings = asked;
   if (outcome == RP_CANCELLED) say(panel, _("Stopped; the picture has not been changed."));
   if (message) say(panel, message);
   g_free(message);

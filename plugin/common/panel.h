@@ -18,10 +18,9 @@ typedef void (*rp_set_func)(gpointer user, const char *key, double value);
 rp_panel *rp_panel_new(rp_host *host, rp_settings *settings, rp_picture *picture, rp_set_func set,
                        gpointer user);
 GtkWidget *rp_panel_widget(rp_panel *panel);
-/* Once the dialog is put together: the panel looks after it. controls: what is insensitive during a
- * run. */
-void rp_panel_attach(rp_panel *panel, GtkWidget *dialog, GtkWidget *controls);
-/* A control has another value, and settings has it too. */
+/* Once the dialog is put together: the panel looks after it. */
+void rp_panel_attach(rp_panel *panel, GtkWidget *dialog);
+/* A control has another value, and settings has it too. Not heeded during a run. */
 void rp_panel_changed(rp_panel *panel, const char *key);
 /* Several have, at once: Reset, presets. No angle among them was set by hand. */
 void rp_panel_changed_all(rp_panel *panel);

@@ -1,5 +1,5 @@
 /* watch.h - a run that the dialog waits for: it lives on and shows the progress; its Cancel and
- * close button stop the run, not the dialog. */
+ * close button stop the run, not the dialog. Nothing else in it can be used meanwhile. */
 #ifndef RP_WATCH_H
 #define RP_WATCH_H
 
@@ -11,6 +11,7 @@ typedef struct {
   GtkWidget *dialog, *status, *progress; /* a GtkDialog, a label, a progress bar */
   rp_worker *worker;                     /* NULL: nothing is running */
   gboolean cancelled;
+  GSList *held; /* widgets that were made insensitive */
 } rp_watch;
 
 /* An rp_runner; watch: an rp_watch. */

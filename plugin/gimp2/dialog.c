@@ -228,7 +228,7 @@ gboolean rp_host_dialog(rp_host *host, rp_settings *settings, rp_picture *pictur
   gtk_box_pack_start(GTK_BOX(gtk_dialog_get_content_area(GTK_DIALOG(d.dialog))), row, TRUE, TRUE,
                      0);
   gtk_widget_show(row);
-  rp_panel_attach(d.panel, d.dialog, controls);
+  rp_panel_attach(d.panel, d.dialog);
   gtk_widget_show(d.dialog);
   gboolean done = ask(&d, request);
   rp_panel_free(d.panel);

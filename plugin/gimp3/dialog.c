@@ -153,7 +153,7 @@ gboolean rp_host_dialog(rp_host *host, rp_settings *settings, rp_picture *pictur
     return FALSE;
   }
   lay_out(&d, controls);
-  rp_panel_attach(d.panel, GTK_WIDGET(d.dialog), controls);
+  rp_panel_attach(d.panel, GTK_WIDGET(d.dialog));
   gulong notify = g_signal_connect(host->config, "notify", G_CALLBACK(on_config), &d);
   gboolean done = ask(&d, request);
   g_signal_handler_disconnect(host->config, notify);

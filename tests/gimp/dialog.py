@@ -197,14 +197,22 @@ def check_cancel(dialog, host):
     working = wait_for(lambda: not any(word in dialog.status() for word in
                                        ("confidence", "Drag", "Draft")), 10, step=.05)
     dialog.window.screenshot("running")
-    reset = dialog.named("Reset")
-    dialog.tap.case(not reset.getState().contains(pyatspi.STATE_SENSITIVE),
-                    "Reset waits for the run's end")
+    # GIMP 3's have no name of ours and lie beside the controls.
+    names = ["Reset", "Estimate", "New seed"] + ["Save Settings", "Load Saved Settings"] * (
+        host.name == "3")
+    usable = [name for name in names
+              if dialog.named(name).getState().contains(pyatspi.STATE_SENSITIVE)]
+    dialog.tap.case(not usable, "Reset and all that changes settings wait for the run's end",
+                    usable)
     start = time.monotonic()
     dialog.window.press(cancel)
     stopped = dialog.says("Stopped", seconds=5)
     took = time.monotonic() - start
     dialog.tap.case(working and stopped, "Cancel stops the run", dialog.status())
+    usable = wait_for(lambda: all(
+        dialog.named(name).getState().contains(pyatspi.STATE_SENSITIVE)
+        for name in names if name != "Load Saved Settings"), 5)
+    dialog.tap.case(usable, "and they can be used again")
     dialog.tap.case(dialog.alive() and dialog.value("Slant") == slant,
                     "and keeps the dialog and its values", f"{took:.2f} s")
     print(f"# {took * 1000:.0f} ms from Cancel to the answer, as the accessibility tree sees it")
