@@ -13,7 +13,8 @@ typedef struct {
   GeglRectangle area;     /* what was read, in the drawable's coordinates */
   int offset_x, offset_y; /* of the drawable in the image */
   rp_pixels image, mask, source, hard_mask, result;
-  GeglRectangle box; /* where the mask is above zero, within area */
+  GeglRectangle box;  /* where the mask is above zero, within area */
+  recede_plane plane; /* of area: the one that result was made with */
 } rp_picture;
 
 typedef enum {

@@ -164,8 +164,15 @@ GeglBuffer *rp_pixels_replaced(GeglBuffer *buffer, const rp_pixels *result, cons
   return copy;
 }
 
+/* A filled pixel's alpha is 1. The core also leaves what is just below the horizon as it was: where
+ * that is transparent, so is the layer. */
+static float alpha_in_layer(const recede_view *mask, const recede_plane *plane, int x, int y,
+                            float alpha) {
+  return recede_plane_w(plane, x, y) > 0 ? rp_mask_value(mask, x, y) * alpha : 0;
+}
+
 void rp_pixels_write_layer(GeglBuffer *buffer, const rp_pixels *result, const recede_view *mask,
-                           const GeglRectangle *box) {
+                           const recede_plane *plane, const GeglRectangle *box) {
   const Babl *space = babl_format_get_space(gegl_buffer_get_format(buffer));
   const Babl *format = babl_format_with_space("R'G'B'A float", space);
   const Babl *fish = babl_fish(result->format, format);
@@ -173,7 +180,7 @@ void rp_pixels_write_layer(GeglBuffer *buffer, const rp_pixels *result, const re
   for (int y = 0; y < box->height; y++) {
     babl_process(fish, at(&result->view, box->x, box->y + y), row, box->width);
     for (int x = 0; x < box->width; x++)
-      row[4 * x + 3] = rp_mask_value(mask, box->x + x, box->y + y);
+      row[4 * x + 3] = alpha_in_layer(mask, plane, box->x + x, box->y + y, row[4 * x + 3]);
     gegl_buffer_set(buffer, GEGL_RECTANGLE(0, y, box->width, 1), 0, format, row,
                     GEGL_AUTO_ROWSTRIDE);
   }

@@ -37,9 +37,10 @@ void rp_pixels_write(GeglBuffer *buffer, const rp_pixels *result, const recede_v
 /* box of buffer as rp_pixels_write() would leave it, in a buffer of its own. */
 GeglBuffer *rp_pixels_replaced(GeglBuffer *buffer, const rp_pixels *result, const recede_view *mask,
                                const GeglRectangle *box);
-/* Writes them into the buffer of a layer that is as large as box, with the mask as alpha. */
+/* Writes them into the buffer of a layer that is as large as box, with the mask as alpha. What lies
+ * beyond plane's horizon was not filled: nothing of it. */
 void rp_pixels_write_layer(GeglBuffer *buffer, const rp_pixels *result, const recede_view *mask,
-                           const GeglRectangle *box);
+                           const recede_plane *plane, const GeglRectangle *box);
 /* All of result into a buffer of its size. */
 void rp_pixels_write_all(GeglBuffer *buffer, const rp_pixels *result);
 

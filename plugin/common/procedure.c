@@ -55,6 +55,7 @@ rp_outcome rp_compute(const rp_host *host, const rp_settings *settings, rp_pictu
   request->threads = rp_host_threads();
   run_it(request, user);
   if (request->status == RECEDE_CANCELLED) return RP_CANCELLED;
+  picture->plane = request->report.orientation.plane;
   *message =
       request->status == RECEDE_OK ? cannot_write(host, settings, picture) : rp_failure(request);
   return *message ? RP_FAILED : RP_DONE;

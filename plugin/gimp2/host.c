@@ -102,7 +102,7 @@ gboolean rp_host_write_new_layer(rp_host *host, const rp_picture *picture) {
                                 type_with_alpha(host->drawable), 100, GIMP_LAYER_MODE_NORMAL);
   if (layer < 0) return FALSE;
   GeglBuffer *buffer = gimp_drawable_get_buffer(layer);
-  rp_pixels_write_layer(buffer, &picture->result, &picture->mask.view, box);
+  rp_pixels_write_layer(buffer, &picture->result, &picture->mask.view, &picture->plane, box);
   g_object_unref(buffer);
   gimp_drawable_offsets(host->drawable, &x, &y);
   gimp_layer_set_offsets(layer, x + box->x, y + box->y);

@@ -9,8 +9,7 @@ gboolean rp_host_is_there(const rp_host *host) {
 
 /* A group's lock holds for all that lies in it, a layer's for its mask. */
 static gboolean is_locked(GimpItem *item) {
-  if (gimp_item_is_layer_mask(item))
-    item = GIMP_ITEM(gimp_layer_from_mask(GIMP_LAYER_MASK(item)));
+  if (gimp_item_is_layer_mask(item)) item = GIMP_ITEM(gimp_layer_from_mask(GIMP_LAYER_MASK(item)));
   for (; item; item = gimp_item_get_parent(item))
     if (gimp_item_get_lock_content(item)) return TRUE;
   return FALSE;
@@ -99,7 +98,7 @@ gboolean rp_host_write_new_layer(rp_host *host, const rp_picture *picture) {
                                     type_with_alpha(host->drawable), 100, GIMP_LAYER_MODE_NORMAL);
   if (!layer) return FALSE;
   GeglBuffer *buffer = gimp_drawable_get_buffer(GIMP_DRAWABLE(layer));
-  rp_pixels_write_layer(buffer, &picture->result, &picture->mask.view, box);
+  rp_pixels_write_layer(buffer, &picture->result, &picture->mask.view, &picture->plane, box);
   g_object_unref(buffer);
   gimp_drawable_get_offsets(host->drawable, &x, &y);
   gimp_layer_set_offsets(layer, x + box->x, y + box->y);

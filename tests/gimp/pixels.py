@@ -151,6 +151,29 @@ def check_new_layer(host, tap, folder):
                  f"layers {len(after.layers)}, at {where}, shape {alpha.shape} {box.shape}")
 
 
+def check_beyond(host, tap, folder):
+    """A new layer has nothing beyond the horizon, be the sky cut out or not."""
+    for alpha in (True, False):
+        random = np.random.default_rng(5)
+        image = random.integers(100, 256, (120, 160, 4), np.uint8)[..., : 3 + alpha]
+        if alpha:
+            image[..., 3] = 255
+            image[:40] = 0
+        cv2.imwrite(f"{folder}/sky-{alpha:d}.png", image)
+        output = host.run(
+            f'(define i (t-load "{folder}/sky-{alpha:d}.png"))', "(define d (t-layer i))",
+            "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE 60 10 40 80)",
+            host.fill(orientation="angles", slant=83, result="new-layer"),
+            f'(t-save i "{folder}/sky-{alpha:d}.xcf")')
+        name = "no new pixels beyond the horizon, " + ("cut out" if alpha else "opaque")
+        if not host.done:
+            tap.case(False, name, output)
+            continue
+        made = xcf.Image(f"{folder}/sky-{alpha:d}.xcf").layers[0].values[..., -1].max(1)
+        # With a field of view of 50 degrees it crosses row 38.4; the layer begins in row 10.
+        tap.case(not made[:28].any() and made[32:].all(), name, made)
+
+
 def check_same_as_command(host, tap, folder, command):
     """The same seed gives the command's pixels on the same file."""
     for bits, kind in ((8, "rectangle"), (8, "feathered"), (16, "disjoint")):
@@ -262,6 +285,7 @@ def main():
     with Host(name, plugin) as host:
         check_table(host, tap, host.folder)
         check_new_layer(host, tap, host.folder)
+        check_beyond(host, tap, host.folder)
         check_mask(host, tap, host.folder)
         check_synthesis(host, tap, host.folder)
         if name == "3":
