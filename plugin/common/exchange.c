@@ -31,7 +31,8 @@ gboolean rp_is_as_read(const rp_host *host, rp_procedure procedure, const rp_pic
   rp_drawable now = rp_host_open(host, procedure);
   gboolean same = gegl_rectangle_equal(&now.area, &picture->area) &&
                   now.offset_x == picture->offset_x && now.offset_y == picture->offset_y &&
-                  selection_is_mask(host, &now, picture);
+                  selection_is_mask(host, &now, picture) &&
+                  rp_pixels_are(&picture->image, now.buffer, &now.area);
   g_object_unref(now.buffer);
   return same;
 }

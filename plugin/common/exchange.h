@@ -6,7 +6,7 @@
 
 /* Why it could not be read; NULL: it was. */
 const char *rp_read(const rp_host *host, rp_procedure procedure, rp_picture *picture);
-/* Whether drawable and selection still are where and what they were; pixels are not compared. */
+/* Whether drawable and selection still are where and what they were, pixel by pixel. */
 gboolean rp_is_as_read(const rp_host *host, rp_procedure procedure, const rp_picture *picture);
 /* id: the drawable to copy from. FALSE: it is gone, or there is no memory; *message says it. */
 gboolean rp_read_source(const rp_host *host, int id, rp_picture *picture, char **message);

@@ -57,6 +57,27 @@ gboolean rp_pixels_read(GeglBuffer *buffer, const GeglRectangle *area, rp_pixels
   return read_as(buffer, area, format, type, pixels);
 }
 
+#define STRIP 64 /* rows read at a time: those of GIMP's tiles */
+
+gboolean rp_pixels_are(const rp_pixels *pixels, GeglBuffer *buffer, const GeglRectangle *area) {
+  recede_type type;
+  const recede_view *view = &pixels->view;
+  gsize stride = view->stride_bytes;
+  if (area->width != view->width || area->height != view->height ||
+      format_for_core(gegl_buffer_get_format(buffer), &type) != pixels->format)
+    return FALSE;
+  guchar *now = g_try_malloc_n(STRIP, stride);
+  gboolean same = now != NULL;
+  for (int y = 0; same && y < area->height; y += STRIP) {
+    int rows = MIN(STRIP, area->height - y);
+    gegl_buffer_get(buffer, GEGL_RECTANGLE(area->x, area->y + y, area->width, rows), 1.0,
+                    pixels->format, now, (gint)stride, GEGL_ABYSS_NONE);
+    same = memcmp(now, (guchar *)view->data + (gsize)y * stride, (gsize)rows * stride) == 0;
+  }
+  g_free(now);
+  return same;
+}
+
 /* 8-bit selections stay bytes, so that the core sees the numbers of a mask in a file. */
 gboolean rp_pixels_read_mask(GeglBuffer *buffer, const GeglRectangle *area, rp_pixels *mask) {
   gboolean bytes = is_type(gegl_buffer_get_format(buffer), "u8");

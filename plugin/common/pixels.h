@@ -17,6 +17,8 @@ typedef struct {
 
 /* A drawable's pixels within area. FALSE: no memory. Free with rp_pixels_clear(). */
 gboolean rp_pixels_read(GeglBuffer *buffer, const GeglRectangle *area, rp_pixels *pixels);
+/* Whether rp_pixels_read() would read the same again. */
+gboolean rp_pixels_are(const rp_pixels *pixels, GeglBuffer *buffer, const GeglRectangle *area);
 /* A selection's or a channel's values within area, zero outside the buffer. */
 gboolean rp_pixels_read_mask(GeglBuffer *buffer, const GeglRectangle *area, rp_pixels *mask);
 /* How light a drawable is, times its alpha: what may be copied from. */

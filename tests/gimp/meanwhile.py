@@ -6,6 +6,7 @@ import pyatspi
 from window import wait_for
 
 SELECT = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE {} {} {} {})(gimp-displays-flush)"
+FILL_ALL = {"2": "gimp-edit-fill", "3": "gimp-drawable-edit-fill"}
 OLD, NEW = (330, 380, 300, 130), (100, 300, 350, 150)
 # A layer of its own to work on, e, and a channel that is white, c.
 ITEMS = ("(define e (car (gimp-layer-copy (t-layer i){})))(gimp-image-insert-layer i e 0 0)"
@@ -69,6 +70,28 @@ def check_before_ok(dialog, window, frame, server, folder):
     is_undone(tap, window, frame, server, before, folder / "undone.xcf", "and undone")
 
 
+def check_painted(dialog, window, frame, server, folder):
+    """Painted over while the dialog is open, with the same selection: that is filled from."""
+    tap, (x, y, width, height) = dialog.tap, OLD
+    server.run(SELECT.format(*OLD))
+    dialog.open(frame)
+    dialog.set("Slant", 80)
+    dialog.choose("Around the selection")
+    server.run("(gimp-context-set-foreground '(0 255 0))(gimp-selection-none i)"
+               f"({FILL_ALL[window.host.name]} e FILL-FOREGROUND)" + SELECT.format(*OLD))
+    before = server.save(folder / "before.xcf")
+    server.run("(gimp-context-set-foreground '(0 0 255))"
+               f"({FILL_ALL[window.host.name]} e FILL-FOREGROUND)(gimp-displays-flush)")
+    dialog.press("OK")
+    tap.case(wait_for(lambda: not dialog.alive(), 40), "what was painted over is filled",
+             dialog.status() if dialog.alive() else "")
+    after = server.save(folder / "after.xcf").layers[0].bytes
+    tap.case(np.array_equal(before.layers[0].bytes, after), "from what is around it now",
+             after[y : y + height, x : x + width].reshape(-1, after.shape[2]).mean(0))
+    for _ in range(4):  # the fill, the selection and both paints
+        window.undo(frame)
+
+
 def check_channel(dialog, window, frame, server):
     """The channel that was copied from is now to be filled itself."""
     tap = dialog.tap
@@ -130,5 +153,6 @@ def check_lost(dialog, window, frame, server, folder):
 def check_meanwhile(dialog, window, frame, server, folder):
     check_before_ok(dialog, window, frame, server, folder)
     check_channel(dialog, window, frame, server)
+    check_painted(dialog, window, frame, server, folder)
     check_while_running(dialog, window, frame, server, folder)
     check_lost(dialog, window, frame, server, folder)
