@@ -59,26 +59,38 @@ char *rp_misfit(const rp_host *host, const rp_picture *picture) {
                          now.area.height);
 }
 
+static void fill_shadow(const rp_host *host, GeglBuffer *drawable, GeglBuffer *exact,
+                        const GeglRectangle *box) {
+  GeglBuffer *shadow = rp_host_open_shadow(host);
+  gegl_buffer_copy(drawable, NULL, GEGL_ABYSS_NONE, shadow, NULL);
+  gegl_buffer_copy(exact, box, GEGL_ABYSS_NONE, shadow, box);
+  g_object_unref(shadow);
+}
+
+static void write_exact(const rp_host *host, GeglBuffer *exact, const GeglRectangle *box) {
+  rp_drawable drawable = rp_host_open(host, RP_FILL);
+  gegl_buffer_copy(exact, box, GEGL_ABYSS_NONE, drawable.buffer, box);
+  g_object_unref(drawable.buffer);
+  rp_host_updated(host, box);
+}
+
 /* The shadow's merge is what GIMP can undo; it works in floats, within the selection's bounds, and
  * blends by it. The exact bytes are then laid over it. When the selection is not the mask any more,
- * nothing is selected meanwhile, and all of the drawable is merged and written. */
-void rp_write_in_place(rp_host *host, const rp_picture *picture) {
+ * nothing is selected meanwhile, and all of the drawable is merged and written. The shadow has all
+ * of the drawable in any case: a selection that changes just then has it merged elsewhere. */
+gboolean rp_write_in_place(rp_host *host, const rp_picture *picture) {
   if (rp_host_alpha_locked(host)) rp_pixels_keep_alpha(&picture->image.view, &picture->result.view);
   rp_drawable drawable = rp_host_open(host, RP_FILL);
   gboolean selected = selection_is_mask(host, &drawable, picture);
   const GeglRectangle *box = selected ? &picture->box : &picture->area;
   GeglBuffer *exact =
       rp_pixels_replaced(drawable.buffer, &picture->result, &picture->mask.view, box);
-  g_object_unref(drawable.buffer);
   if (!selected) rp_host_select_nothing(host);
-  GeglBuffer *shadow = rp_host_open_shadow(host);
-  gegl_buffer_copy(exact, box, GEGL_ABYSS_NONE, shadow, box);
-  g_object_unref(shadow);
-  rp_host_merge_shadow(host);
-  drawable = rp_host_open(host, RP_FILL);
-  gegl_buffer_copy(exact, box, GEGL_ABYSS_NONE, drawable.buffer, box);
+  fill_shadow(host, drawable.buffer, exact, box);
   g_object_unref(drawable.buffer);
+  gboolean merged = rp_host_merge_shadow(host);
+  if (merged) write_exact(host, exact, box);
   g_object_unref(exact);
-  rp_host_updated(host, box);
   if (!selected) rp_host_select_again(host);
+  return merged;
 }

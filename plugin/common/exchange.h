@@ -12,7 +12,8 @@ gboolean rp_is_as_read(const rp_host *host, rp_procedure procedure, const rp_pic
 gboolean rp_read_source(const rp_host *host, int id, rp_picture *picture, char **message);
 /* Why a fill of picture no longer fits into its drawable (free it); NULL: it does. */
 char *rp_misfit(const rp_host *host, const rp_picture *picture);
-/* Writes what was selected when picture was read, whatever is selected now. One step of undo. */
-void rp_write_in_place(rp_host *host, const rp_picture *picture);
+/* Writes what was selected when picture was read, whatever is selected now. One step of undo.
+ * FALSE: GIMP refused, and nothing was written. */
+gboolean rp_write_in_place(rp_host *host, const rp_picture *picture);
 
 #endif

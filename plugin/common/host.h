@@ -31,8 +31,8 @@ gboolean rp_host_open_other(const rp_host *host, int id, rp_drawable *drawable);
 /* The layer's alpha must stay. */
 gboolean rp_host_alpha_locked(const rp_host *host);
 GeglBuffer *rp_host_open_shadow(const rp_host *host);
-/* The shadow becomes the drawable, within the selection: one step of undo. */
-void rp_host_merge_shadow(const rp_host *host);
+/* The shadow becomes the drawable, within the selection: one step of undo. FALSE: GIMP refused. */
+gboolean rp_host_merge_shadow(const rp_host *host);
 /* Nothing is selected until rp_host_select_again() brings back what was. All that happens between
  * the two is one step of undo. */
 void rp_host_select_nothing(rp_host *host);

@@ -8,6 +8,9 @@
 #include "pixels.h"
 
 const char *rp_target_refusal(const rp_target *target, gboolean writes, gboolean new_layer) {
+  if (target->elsewhere)
+    return _(
+        "The layer belongs to another image than the one given. Give the image that it is in.");
   if (target->group)
     return _("A layer group has no pixels of its own. Select one layer inside the group.");
   if (target->indexed)
@@ -49,6 +52,11 @@ const char *rp_one_layer_only(void) {
 
 const char *rp_no_memory(void) {
   return _("There is not enough memory for this picture. Close other images or scale it down.");
+}
+
+const char *rp_not_taken(void) {
+  return _("GIMP did not let the layer be changed, and nothing was written. See whether it is "
+           "locked, and start again.");
 }
 
 static const struct {

@@ -8,6 +8,7 @@
 
 /* What a host found out about the layer that is to be filled. */
 typedef struct {
+  gboolean elsewhere; /* of another image than the one given */
   gboolean group, indexed, locked, text, floating;
   gboolean is_layer; /* else a channel or a mask */
 } rp_target;
@@ -20,6 +21,8 @@ const char *rp_no_selection(void);
 const char *rp_selection_outside(void);
 const char *rp_one_layer_only(void);
 const char *rp_no_memory(void);
+/* GIMP did not take the fill. */
+const char *rp_not_taken(void);
 
 /* What is running. */
 const char *rp_title(const rp_request *request);

@@ -63,14 +63,11 @@ rp_outcome rp_compute(const rp_host *host, const rp_settings *settings, rp_pictu
 
 static const char *write_result(rp_host *host, const rp_settings *settings,
                                 const rp_picture *picture) {
-  gboolean written = TRUE;
   if (settings->procedure == RP_SYNTHESIZE)
-    written = rp_host_write_new_image(host, picture);
-  else if (into_new_layer(settings))
-    written = rp_host_write_new_layer(host, picture);
-  else
-    rp_write_in_place(host, picture);
-  return written ? NULL : rp_no_memory();
+    return rp_host_write_new_image(host, picture) ? NULL : rp_no_memory();
+  if (into_new_layer(settings))
+    return rp_host_write_new_layer(host, picture) ? NULL : rp_no_memory();
+  return rp_write_in_place(host, picture) ? NULL : rp_not_taken();
 }
 
 /* GIMP's own Cancel ends the process: the image has not been touched. */

@@ -20,7 +20,8 @@ static gboolean is_locked(gint32 item) {
 rp_target rp_host_target(const rp_host *host) {
   gint32 item = host->drawable;
   gboolean is_layer = gimp_item_is_layer(item);
-  return (rp_target){.group = gimp_item_is_group(item),
+  return (rp_target){.elsewhere = gimp_item_get_image(item) != host->image,
+                     .group = gimp_item_is_group(item),
                      .indexed = gimp_drawable_is_indexed(item),
                      .locked = is_locked(item),
                      .text = gimp_item_is_text_layer(item),
@@ -67,7 +68,9 @@ GeglBuffer *rp_host_open_shadow(const rp_host *host) {
   return gimp_drawable_get_shadow_buffer(host->drawable);
 }
 
-void rp_host_merge_shadow(const rp_host *host) { gimp_drawable_merge_shadow(host->drawable, TRUE); }
+gboolean rp_host_merge_shadow(const rp_host *host) {
+  return gimp_drawable_merge_shadow(host->drawable, TRUE);
+}
 
 void rp_host_select_nothing(rp_host *host) {
   gimp_image_undo_group_start(host->image);

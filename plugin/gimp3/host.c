@@ -18,7 +18,8 @@ static gboolean is_locked(GimpItem *item) {
 rp_target rp_host_target(const rp_host *host) {
   GimpItem *item = GIMP_ITEM(host->drawable);
   gboolean is_layer = gimp_item_is_layer(item);
-  return (rp_target){.group = gimp_item_is_group_layer(item),
+  return (rp_target){.elsewhere = gimp_item_get_image(item) != host->image,
+                     .group = gimp_item_is_group_layer(item),
                      .indexed = gimp_drawable_is_indexed(host->drawable),
                      .locked = is_locked(item),
                      .text = gimp_item_is_text_layer(item),
@@ -62,7 +63,9 @@ GeglBuffer *rp_host_open_shadow(const rp_host *host) {
   return gimp_drawable_get_shadow_buffer(host->drawable);
 }
 
-void rp_host_merge_shadow(const rp_host *host) { gimp_drawable_merge_shadow(host->drawable, TRUE); }
+gboolean rp_host_merge_shadow(const rp_host *host) {
+  return gimp_drawable_merge_shadow(host->drawable, TRUE);
+}
 
 void rp_host_select_nothing(rp_host *host) {
   gimp_image_undo_group_start(host->image);

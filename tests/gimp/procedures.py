@@ -109,6 +109,10 @@ def errors(host):
            "outside the layer")
     yield ("everything selected", "(gimp-selection-all i)" + host.fill(**frontal),
            "covers all of the layer that is selected")
+    other = "(define j (car (gimp-image-duplicate i)))(define e (t-layer j))" + select
+    yield "another image's layer", other + host.fill(layer="e", **frontal), "another image"
+    yield ("another image's texture", other + host.synthesize(layer="e", **frontal),
+           "another image")
     yield ("a group", f"(define g (car {new_group(host)}))(gimp-image-insert-layer i g 0 0)"
            + select + host.fill(layer="g", **frontal), "layer group")
     yield ("indexed", select + "(gimp-image-convert-indexed i CONVERT-DITHER-NONE"
