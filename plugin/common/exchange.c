@@ -79,12 +79,11 @@ static void write_exact(const rp_host *host, GeglBuffer *exact, const GeglRectan
  * nothing is selected meanwhile, and all of the drawable is merged and written. The shadow has all
  * of the drawable in any case: a selection that changes just then has it merged elsewhere. */
 gboolean rp_write_in_place(rp_host *host, const rp_picture *picture) {
-  if (rp_host_alpha_locked(host)) rp_pixels_keep_alpha(&picture->image.view, &picture->result.view);
   rp_drawable drawable = rp_host_open(host, RP_FILL);
   gboolean selected = selection_is_mask(host, &drawable, picture);
   const GeglRectangle *box = selected ? &picture->box : &picture->area;
-  GeglBuffer *exact =
-      rp_pixels_replaced(drawable.buffer, &picture->result, &picture->mask.view, box);
+  GeglBuffer *exact = rp_pixels_replaced(drawable.buffer, &picture->result, &picture->mask.view,
+                                         box, rp_host_components(host));
   if (!selected) rp_host_select_nothing(host);
   fill_shadow(host, drawable.buffer, exact, box);
   g_object_unref(drawable.buffer);

@@ -28,8 +28,9 @@ GeglBuffer *rp_host_open_selection(const rp_host *host);
 /* id: another drawable of this image. FALSE: there is none. */
 gboolean rp_host_open_other(const rp_host *host, int id, rp_drawable *drawable);
 
-/* The layer's alpha must stay. */
-gboolean rp_host_alpha_locked(const rp_host *host);
+/* Which components of a pixel may change, a bit each, the first the lowest: of a layer those that
+ * the Channels dialog has not switched off, and alpha unless it is locked. */
+unsigned rp_host_components(const rp_host *host);
 GeglBuffer *rp_host_open_shadow(const rp_host *host);
 /* The shadow becomes the drawable, within the selection: one step of undo. FALSE: GIMP refused. */
 gboolean rp_host_merge_shadow(const rp_host *host);

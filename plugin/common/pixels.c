@@ -147,15 +147,16 @@ gboolean rp_mask_harden(const recede_view *mask, rp_pixels *hard) {
   return TRUE;
 }
 
-void rp_pixels_keep_alpha(const recede_view *image, const recede_view *result) {
-  gsize bytes = type_bytes(result->type), alpha = (gsize)(result->channels - 1) * bytes;
-  for (int y = 0; y < result->height; y++)
-    for (int x = 0; x < result->width; x++)
-      memcpy(at(result, x, y) + alpha, at(image, x, y) + alpha, bytes);
+static void replace(guchar *pixel, const guchar *by, const Babl *format, unsigned components) {
+  gsize count = (gsize)babl_format_get_n_components(format);
+  gsize bytes = (gsize)babl_format_get_bytes_per_pixel(format) / count;
+  for (gsize i = 0; i < count; i++)
+    if (components >> i & 1) memcpy(pixel + i * bytes, by + i * bytes, bytes);
 }
 
-static void write_row(GeglBuffer *buffer, const Babl *fish, const Babl *native,
-                      const rp_pixels *result, const recede_view *mask, const GeglRectangle *row) {
+static void write_row(GeglBuffer *buffer, const Babl *fish, const rp_pixels *result,
+                      const recede_view *mask, const GeglRectangle *row, unsigned components) {
+  const Babl *native = gegl_buffer_get_format(buffer);
   gsize bytes = (gsize)babl_format_get_bytes_per_pixel(native);
   guchar *old = g_malloc_n((gsize)row->width, bytes),
          *converted = g_malloc_n((gsize)row->width, bytes);
@@ -163,25 +164,20 @@ static void write_row(GeglBuffer *buffer, const Babl *fish, const Babl *native,
   babl_process(fish, at(&result->view, row->x, row->y), converted, row->width);
   for (int x = 0; x < row->width; x++)
     if (rp_mask_value(mask, row->x + x, row->y) > 0)
-      memcpy(old + (gsize)x * bytes, converted + (gsize)x * bytes, bytes);
+      replace(old + (gsize)x * bytes, converted + (gsize)x * bytes, native, components);
   gegl_buffer_set(buffer, row, 0, native, old, GEGL_AUTO_ROWSTRIDE);
   g_free(old);
   g_free(converted);
 }
 
-void rp_pixels_write(GeglBuffer *buffer, const rp_pixels *result, const recede_view *mask,
-                     const GeglRectangle *box) {
+GeglBuffer *rp_pixels_replaced(GeglBuffer *buffer, const rp_pixels *result, const recede_view *mask,
+                               const GeglRectangle *box, unsigned components) {
   const Babl *native = gegl_buffer_get_format(buffer);
   const Babl *fish = babl_fish(result->format, native);
-  for (int y = box->y; y < box->y + box->height; y++)
-    write_row(buffer, fish, native, result, mask, GEGL_RECTANGLE(box->x, y, box->width, 1));
-}
-
-GeglBuffer *rp_pixels_replaced(GeglBuffer *buffer, const rp_pixels *result, const recede_view *mask,
-                               const GeglRectangle *box) {
-  GeglBuffer *copy = gegl_buffer_new(box, gegl_buffer_get_format(buffer));
+  GeglBuffer *copy = gegl_buffer_new(box, native);
   gegl_buffer_copy(buffer, box, GEGL_ABYSS_NONE, copy, box);
-  rp_pixels_write(copy, result, mask, box);
+  for (int y = box->y; y < box->y + box->height; y++)
+    write_row(copy, fish, result, mask, GEGL_RECTANGLE(box->x, y, box->width, 1), components);
   return copy;
 }
 

@@ -31,14 +31,12 @@ gboolean rp_mask_bounds(const recede_view *mask, GeglRectangle *bounds);
 /* A copy in which every value above zero is full. FALSE: no memory. */
 gboolean rp_mask_harden(const recede_view *mask, rp_pixels *hard);
 float rp_mask_value(const recede_view *mask, int x, int y);
-/* Alpha of result becomes that of image. */
-void rp_pixels_keep_alpha(const recede_view *image, const recede_view *result);
-/* Writes result's pixels under the mask, within box, into buffer; every other byte stays. */
-void rp_pixels_write(GeglBuffer *buffer, const rp_pixels *result, const recede_view *mask,
-                     const GeglRectangle *box);
-/* box of buffer as rp_pixels_write() would leave it, in a buffer of its own. */
+#define RP_ALL_COMPONENTS (~0u)
+
+/* box of buffer in a buffer of its own, with result's pixels under the mask, and of them those
+ * components that have their bit in components; every other byte is as it was. */
 GeglBuffer *rp_pixels_replaced(GeglBuffer *buffer, const rp_pixels *result, const recede_view *mask,
-                               const GeglRectangle *box);
+                               const GeglRectangle *box, unsigned components);
 /* Writes them into the buffer of a layer that is as large as box, with the mask as alpha. What lies
  * beyond plane's horizon was not filled: nothing of it. */
 void rp_pixels_write_layer(GeglBuffer *buffer, const rp_pixels *result, const recede_view *mask,

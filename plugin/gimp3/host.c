@@ -54,9 +54,19 @@ gboolean rp_host_open_other(const rp_host *host, int id, rp_drawable *drawable) 
   return TRUE;
 }
 
-gboolean rp_host_alpha_locked(const rp_host *host) {
-  return GIMP_IS_LAYER(host->drawable) && gimp_layer_get_lock_alpha(GIMP_LAYER(host->drawable)) &&
-         gimp_drawable_has_alpha(host->drawable);
+unsigned rp_host_components(const rp_host *host) {
+  static const GimpChannelType gray[] = {GIMP_CHANNEL_GRAY, GIMP_CHANNEL_ALPHA},
+                               rgb[] = {GIMP_CHANNEL_RED, GIMP_CHANNEL_GREEN, GIMP_CHANNEL_BLUE,
+                                        GIMP_CHANNEL_ALPHA};
+  unsigned components = 0;
+  if (!GIMP_IS_LAYER(host->drawable)) return RP_ALL_COMPONENTS;
+  gboolean is_gray = gimp_drawable_is_gray(host->drawable);
+  int alpha = is_gray ? 1 : 3;
+  for (int i = 0; i <= alpha; i++)
+    if (gimp_image_get_component_active(host->image, (is_gray ? gray : rgb)[i]))
+      components |= 1u << i;
+  if (gimp_layer_get_lock_alpha(GIMP_LAYER(host->drawable))) components &= ~(1u << alpha);
+  return components;
 }
 
 GeglBuffer *rp_host_open_shadow(const rp_host *host) {

@@ -174,6 +174,29 @@ def check_beyond(host, tap, folder):
         tap.case(not made[:28].any() and made[32:].all(), name, made)
 
 
+def check_components(host, tap, folder):
+    """What the Channels dialog has switched off stays, and alpha that is locked."""
+    off = "(gimp-image-set-component-active i CHANNEL-{} FALSE)"
+    select = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE 0 0 40 30)"  # over its fading corner
+    for name, script, kept in (
+            ("green and blue switched off", off.format("GREEN") + off.format("BLUE"), (1, 2)),
+            ("alpha switched off", off.format("ALPHA"), (3,)),
+            ("alpha locked", "(gimp-layer-set-lock-alpha d TRUE)", (3,))):
+        stem = folder / name.replace(" ", "-")
+        output = host.run(
+            f'(define i (t-load "{folder}/picture-1.png"))', "(define d (t-layer i))",
+            f"(gimp-image-convert-precision i {host.precision('u32-linear')})", select, script,
+            f'(t-save i "{stem}-before.xcf")', host.fill(orientation="angles", slant=35),
+            f'(t-save i "{stem}-after.xcf")')
+        if not host.done:
+            tap.case(False, name, output)
+            continue
+        before, after = (xcf.Image(f"{stem}-{when}.xcf").layers[0].values
+                         for when in ("before", "after"))
+        changed = [int((before[..., k] != after[..., k]).sum()) for k in range(4)]
+        tap.case(all((changed[k] == 0) == (k in kept) for k in range(4)), name, changed)
+
+
 def check_same_as_command(host, tap, folder, command):
     """The same seed gives the command's pixels on the same file."""
     for bits, kind in ((8, "rectangle"), (8, "feathered"), (16, "disjoint")):
@@ -287,6 +310,7 @@ def main():
         check_new_layer(host, tap, host.folder)
         check_beyond(host, tap, host.folder)
         check_mask(host, tap, host.folder)
+        check_components(host, tap, host.folder)
         check_synthesis(host, tap, host.folder)
         if name == "3":
             check_laid(host, tap, host.folder)
