@@ -21,6 +21,9 @@ const char *rp_target_refusal(const rp_target *target, gboolean writes, gboolean
   if (new_layer && !target->is_layer)
     return _("A channel or layer mask can only be filled in place: put the fill into it, not into "
              "a new layer.");
+  if (new_layer && target->filtered)
+    return _("The layer has filters, which a new layer would lack. Merge them first, in the menu "
+             "of the layer's fx icon in the Layers dialog, or fill into this layer.");
   if (!writes || new_layer) return NULL;
   if (target->text)
     return _("This is a text layer. Choose Layer > Discard Text Information first, or fill into a "

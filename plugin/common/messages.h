@@ -10,6 +10,7 @@
 typedef struct {
   gboolean elsewhere; /* of another image than the one given */
   gboolean group, indexed, locked, text, floating;
+  gboolean filtered; /* it shows other pixels than it has */
   gboolean is_layer; /* else a channel or a mask */
 } rp_target;
 

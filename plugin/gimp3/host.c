@@ -15,6 +15,16 @@ static gboolean is_locked(GimpItem *item) {
   return FALSE;
 }
 
+/* Filters that are not merged change what a layer shows, not its pixels. */
+static gboolean is_filtered(GimpDrawable *drawable) {
+  GimpDrawableFilter **filters = gimp_drawable_get_filters(drawable);
+  gboolean filtered = FALSE;
+  for (int i = 0; filters && filters[i]; i++)
+    filtered = filtered || gimp_drawable_filter_get_visible(filters[i]);
+  g_free(filters);
+  return filtered;
+}
+
 rp_target rp_host_target(const rp_host *host) {
   GimpItem *item = GIMP_ITEM(host->drawable);
   gboolean is_layer = gimp_item_is_layer(item);
@@ -22,6 +32,7 @@ rp_target rp_host_target(const rp_host *host) {
                      .group = gimp_item_is_group_layer(item),
                      .indexed = gimp_drawable_is_indexed(host->drawable),
                      .locked = is_locked(item),
+                     .filtered = is_filtered(host->drawable),
                      .text = gimp_item_is_text_layer(item),
                      .floating = is_layer && gimp_layer_is_floating_sel(GIMP_LAYER(item)),
                      .is_layer = is_layer};

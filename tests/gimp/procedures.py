@@ -144,6 +144,9 @@ def errors(host):
     yield ("a source that is none", select + host.fill(source=4711, **frontal),
            "source|invalid|argument")
     if host.name == "3":
+        yield ("a new layer above one with filters", select
+               + '(gimp-drawable-append-new-filter d "gegl:invert-gamma" "" LAYER-MODE-REPLACE 1.0)'
+               + host.fill(result="new-layer", **frontal), "has filters")
         yield ("two layers", select + "(define e (car (gimp-layer-copy d)))"
                "(gimp-image-insert-layer i e 0 0)" + host.fill(layer="d e", **frontal),
                "exactly one")
