@@ -11,6 +11,7 @@ typedef struct {
   rp_angles_func dragged;
   gpointer user;
   rp_grab grab;
+  int pointed_at; /* what the cursor has been set for; -1: nothing yet */
   recede_plane start;
   double from[2];
 } preview;
@@ -42,10 +43,12 @@ static gboolean on_release(GtkWidget *area, GdkEventButton *event, gpointer data
   return TRUE;
 }
 
-static void show_cursor(GtkWidget *area, rp_grab grab) {
+static void show_cursor(GtkWidget *area, preview *p, rp_grab grab) {
   static const GdkCursorType shapes[] = {GDK_FLEUR, GDK_FLEUR, GDK_SB_V_DOUBLE_ARROW, GDK_CROSSHAIR,
                                          GDK_CROSSHAIR};
+  if (p->pointed_at == (int)grab) return; /* the pointer moves far more often */
   rp_ui_set_cursor(area, shapes[grab]);
+  p->pointed_at = (int)grab;
 }
 
 static gboolean on_motion(GtkWidget *area, GdkEventMotion *event, gpointer data) {
@@ -53,7 +56,7 @@ static gboolean on_motion(GtkWidget *area, GdkEventMotion *event, gpointer data)
   double at[2], slant_deg, tilt_deg;
   rp_grab grab = grab_at(area, p, event->x, event->y, at);
   if (p->grab == RP_GRAB_NOTHING)
-    show_cursor(area, grab);
+    show_cursor(area, p, grab);
   else if (rp_scene_drag(p->scene, p->grab, &p->start, p->from, at, &slant_deg, &tilt_deg))
     p->dragged(p->user, slant_deg, tilt_deg);
   gdk_event_request_motions(event);
@@ -66,7 +69,8 @@ static void draw(cairo_t *cairo, int width, int height, gpointer data) {
 
 GtkWidget *rp_preview_new(rp_scene *scene, rp_angles_func dragged, gpointer user) {
   preview *p = g_new0(preview, 1);
-  *p = (preview){.painter = {draw, p}, .scene = scene, .dragged = dragged, .user = user};
+  *p = (preview){
+      .painter = {draw, p}, .scene = scene, .dragged = dragged, .user = user, .pointed_at = -1};
   GtkWidget *area = gtk_drawing_area_new();
   rp_ui_on_draw(area, &p->painter);
   g_object_set_data_full(G_OBJECT(area), "recede-preview", p, g_free);
