@@ -64,8 +64,7 @@ static void show_settings(gpointer user, const rp_settings *settings) {
   int count;
   rp_arguments(settings->procedure, &count);
   d->showing = TRUE;
-  for (int i = 0; i < count; i++)
-    if (row_of(d, i)->type != RP_DRAWABLE) set_control(d, i, settings->values[i]);
+  for (int i = 0; i < count; i++) set_control(d, i, settings->values[i]);
   d->showing = FALSE;
   rp_panel_changed_all(d->panel);
 }

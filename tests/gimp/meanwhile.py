@@ -75,8 +75,11 @@ def check_painted(dialog, window, frame, server, folder):
     tap, (x, y, width, height) = dialog.tap, OLD
     server.run(SELECT.format(*OLD))
     dialog.open(frame)
+    dialog.choose("Selection Mask")
+    dialog.reset()
+    tap.case(wait_for(lambda: dialog.chosen("Around the selection") == "Around the selection", 5),
+             "Reset copies from around the selection", dialog.chosen("Around the selection"))
     dialog.set("Slant", 80)
-    dialog.choose("Around the selection")
     server.run("(gimp-context-set-foreground '(0 255 0))(gimp-selection-none i)"
                f"({FILL_ALL[window.host.name]} e FILL-FOREGROUND)" + SELECT.format(*OLD))
     before = server.save(folder / "before.xcf")
