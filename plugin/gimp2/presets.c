@@ -53,11 +53,13 @@ static double read_value(const presets *p, const char *name, const rp_argument *
   return CLAMP(value, row->minimum, row->maximum);
 }
 
+/* Typing tells of a change with every key, also when what is there by then is a preset's name. */
 static void on_chosen(GtkComboBox *combo, gpointer user) {
   presets *p = user;
   rp_settings settings = *p->settings;
   int count;
   const rp_argument *rows = rp_arguments(settings.procedure, &count);
+  if (gtk_combo_box_get_active(combo) < 0) return;
   char *name = gtk_combo_box_get_active_text(combo);
   if (name && g_key_file_has_group(p->file, name)) {
     for (int i = 0; i < count; i++)

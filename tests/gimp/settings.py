@@ -118,12 +118,23 @@ def settles_at(dialog, wanted, name):
 def check_presets_2(dialog):
     entry = next(node for node in walk(dialog.root) if node.getRoleName() == "text"
                  and node.getState().contains(pyatspi.STATE_EDITABLE))
-    entry.queryEditableText().setTextContents("small")
+    text = entry.queryEditableText()
+    text.setTextContents("small")
     dialog.press("Save preset")
     dialog.reset()
     settles_at(dialog, (1024, 768, 45), "Reset sets the defaults")
     dialog.window.press(dialog.named("small"))
     settles_at(dialog, (300, 200, 60), "a preset brings its values back")
+    dialog.set("Width", 320)
+    text.setTextContents("")
+    for place, letter in enumerate("small"):
+        text.insertText(place, letter, 1)
+    time.sleep(.5)
+    settles_at(dialog, (320, 200, 60), "typing its name does not")
+    dialog.press("Save preset")
+    dialog.reset()
+    dialog.window.press(dialog.named("small"))
+    settles_at(dialog, (320, 200, 60), "but lets it be saved anew")
 
 
 def check_presets_3(dialog):
