@@ -104,12 +104,25 @@ static char *empty_source(const rp_request *request) {
   return g_strdup(_("Nothing is left to copy from. Select less, or choose another source."));
 }
 
+static char *wrong_arguments(const rp_request *request) {
+  const recede_params *params = &request->params;
+  gboolean laid = request->run == RP_RUN_SYNTHESIZE && params->exemplar == RECEDE_EXEMPLAR_FRONTAL;
+  if (laid && params->orientation == RECEDE_ORIENTATION_AUTO)
+    return g_strdup(_("A texture seen from the front does not tell how the plane lies. Set slant "
+                      "and tilt."));
+  if (laid && params->method != RECEDE_METHOD_PLANE)
+    return g_strdup(_("This method needs a texture seen in perspective. Choose the one that copies "
+                      "within the plane, or another view of the texture."));
+  return g_strdup(request->message);
+}
+
 char *rp_failure(const rp_request *request) {
   switch (request->status) {
     case RECEDE_NO_MEMORY: return g_strdup(rp_no_memory());
     case RECEDE_EMPTY_TARGET:
       return g_strdup(_("Nothing of the selection lies on the plane: it is all beyond the horizon. "
                         "Check the horizon in the preview, or change slant and tilt."));
+    case RECEDE_ARGUMENT: return wrong_arguments(request);
     case RECEDE_EMPTY_SOURCE: return empty_source(request);
     case RECEDE_NO_PLANE:
       if (request->params.orientation != RECEDE_ORIENTATION_AUTO)

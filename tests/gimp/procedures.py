@@ -144,6 +144,8 @@ def errors(host):
     yield ("a source that is none", select + host.fill(source=4711, **frontal),
            "source|invalid|argument")
     if host.name == "3":
+        yield ("a texture from the front without angles", host.synthesize(exemplar="frontal"),
+               "Set slant and tilt")
         yield ("a new layer above one with filters", select
                + '(gimp-drawable-append-new-filter d "gegl:invert-gamma" "" LAYER-MODE-REPLACE 1.0)'
                + host.fill(result="new-layer", **frontal), "has filters")

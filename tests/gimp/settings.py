@@ -84,6 +84,12 @@ def check_laid(dialog):
                     "it has no orientation to be read")
     dialog.changes(lambda: dialog.set("Slant", 70), "Slant lays it anew", .05)
     waits_for_draft(dialog)
+    dialog.choose("Texture optimization", "baseline")
+    dialog.press("OK")
+    dialog.tap.case(dialog.says("Choose the one that copies within the plane"),
+                    "a method that cannot lay it is told", dialog.status())
+    dialog.choose("Copies within the plane")
+    waits_for_draft(dialog)
     dialog.set("Slant", 60)
 
 
