@@ -8,6 +8,7 @@
 #include "draft.h"
 #include "exchange.h"
 #include "intl.h"
+#include "legend.h"
 #include "preview.h"
 #include "procedure.h"
 #include "watch.h"
@@ -31,30 +32,22 @@ struct rp_panel {
   rp_watch watch;   /* of the run that OK asks for */
   gboolean setting; /* the panel itself is moving the controls */
   gboolean refused; /* why is what the panel says */
+  /* What became of a run stays said until the user goes on, whatever goes on by itself. */
+  gboolean answered;
   GtkWidget *box, *area, *shows[SHOWS], *estimate_button;
 };
 
 static void say(rp_panel *panel, const char *text) {
-  gtk_label_set_text(GTK_LABEL(panel->watch.status), text);
+  if (!panel->answered) gtk_label_set_text(GTK_LABEL(panel->watch.status), text);
 }
 
-/* What the user sees and can do with it. */
-static void explain(rp_panel *panel) {
-  if (panel->scene.show == RP_SHOW_SCALE)
-    say(panel, _("Blue: the texture gets smaller; orange: larger than in the selection; red: it "
-                 "would have to be magnified; grey: beyond the horizon."));
-  else if (rp_scene_is_laid(&panel->scene) && panel->scene.draft.pixels)
-    say(panel, _("The new image, as a draft. Drag the horizon, its handles or the grid to tilt "
-                 "it."));
-  else if (panel->scene.show == RP_SHOW_DRAFT && panel->scene.draft.pixels)
-    say(panel, _("Draft: the real fill at the preview's size."));
-  else if (rp_scene_is_beyond(&panel->scene))
-    say(panel,
-        _("The picture lies beyond the horizon of this plane, so nothing can be filled. Choose "
-          "a smaller slant."));
-  else
-    say(panel, _("Drag the horizon, its handles or the grid to lay the plane on the picture."));
+static void answer(rp_panel *panel, const char *text) {
+  panel->answered = FALSE;
+  say(panel, text);
+  panel->answered = TRUE;
 }
+
+static void explain(rp_panel *panel) { say(panel, rp_legend(&panel->scene)); }
 
 static int choice(const rp_panel *panel, const char *key) {
   return (int)rp_settings_get(panel->settings, key);
@@ -167,6 +160,7 @@ static void renew_estimate(rp_panel *panel) {
 static void on_estimate_clicked(GtkButton *button, gpointer user) {
   rp_panel *panel = user;
   (void)button;
+  panel->answered = FALSE;
   set_value(panel, "orientation", RECEDE_ORIENTATION_AUTO);
   start_estimate(panel);
 }
@@ -175,6 +169,7 @@ static void on_estimate_clicked(GtkButton *button, gpointer user) {
 
 static void on_dragged(gpointer user, double slant_deg, double tilt_deg) {
   rp_panel *panel = user;
+  panel->answered = FALSE;
   take_angles(panel);
   set_angles(panel, slant_deg, tilt_deg);
   show_plane(panel);
@@ -214,6 +209,7 @@ static void renew_scene(rp_panel *panel) {
 
 void rp_panel_changed(rp_panel *panel, const char *key) {
   if (panel->setting || panel->watch.worker) return;
+  panel->answered = FALSE;
   if (strcmp(key, "exemplar") == 0 || strcmp(key, "width") == 0 || strcmp(key, "height") == 0) {
     renew_scene(panel);
     if (strcmp(key, "exemplar") == 0) renew_estimate(panel);
@@ -227,6 +223,7 @@ void rp_panel_changed(rp_panel *panel, const char *key) {
 
 void rp_panel_changed_all(rp_panel *panel) {
   if (panel->watch.worker) return;
+  panel->answered = FALSE;
   renew_scene(panel);
   explain(panel);
   if (panel->settings->procedure == RP_FILL) take_source(panel);
@@ -262,6 +259,7 @@ static void on_show(GtkToggleButton *button, gpointer user) {
   for (int i = 0; i < SHOWS; i++)
     if (panel->shows[i] == GTK_WIDGET(button)) panel->scene.show = (rp_show)i;
   panel->scene.shade_is_old = TRUE;
+  panel->answered = FALSE;
   explain(panel);
   if (panel->scene.show == RP_SHOW_DRAFT && !panel->scene.draft.pixels)
     rp_draft_renew(&panel->draft);
@@ -331,6 +329,7 @@ GtkWidget *rp_panel_widget(rp_panel *panel) { return panel->box; }
 static gboolean can_fill(rp_panel *panel, gboolean result_chosen) {
   const char *text = rp_refusal(panel->host, panel->settings, result_chosen);
   if (!text) text = read_anew(panel);
+  if (text || panel->refused) panel->answered = FALSE;
   if (text)
     say(panel, text);
   else if (panel->refused && !panel->estimate.worker)
@@ -364,19 +363,27 @@ void rp_panel_free(rp_panel *panel) {
 
 /* -------------------------------------------------------------------------------------- run -- */
 
+/* What a run without a result interrupted. */
+static void resume(rp_panel *panel, gboolean estimating) {
+  if (estimating) start_estimate(panel);
+  if (!panel->scene.draft.pixels) rp_draft_renew(&panel->draft);
+}
+
 /* The result is written as the settings were when OK was pressed, whatever changes them meanwhile.
  */
 gboolean rp_panel_compute(rp_panel *panel, rp_request *request) {
   char *message = NULL;
   if (!can_fill(panel, TRUE)) return FALSE;
+  gboolean estimating = panel->estimate.worker != NULL;
   rp_draft_stop(&panel->draft);
   stop_estimate(panel);
   rp_settings asked = *panel->settings;
   rp_outcome outcome = rp_compute(panel->host, &asked, panel->picture, request, rp_watch_run,
                                   &panel->watch, &message);
   if (outcome == RP_DONE) *panel->settings = asked;
-  if (outcome == RP_CANCELLED) say(panel, _("Stopped; the picture has not been changed."));
-  if (message) say(panel, message);
+  if (outcome == RP_CANCELLED) answer(panel, _("Stopped; the picture has not been changed."));
+  if (message) answer(panel, message);
+  if (outcome != RP_DONE) resume(panel, estimating);
   g_free(message);
   return outcome == RP_DONE;
 }

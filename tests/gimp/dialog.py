@@ -184,6 +184,10 @@ def check_drag(dialog):
                     f"{before} {dialog.value('Tilt')}")
 
 
+def is_sensitive(node):
+    return node.getState().contains(pyatspi.STATE_SENSITIVE)
+
+
 def check_cancel(dialog, host):
     """A long run, stopped: the dialog and its values stay."""
     dialog.set("Slant", 80)
@@ -193,15 +197,19 @@ def check_cancel(dialog, host):
     dialog.choose("Texture optimization", "baseline")  # the slowest
     time.sleep(.5)
     cancel = dialog.window.button(dialog.root, "Cancel")
+    names = ["Reset", "Estimate", "New seed"] + ["Save Settings", "Load Saved Settings"] * (
+        host.name == "3")
+    buttons = {name: dialog.named(name) for name in names}
+    if host.name == "3":
+        dialog.window.press(buttons["Save Settings"])
+        dialog.tap.case(wait_for(lambda: is_sensitive(buttons["Load Saved Settings"]), 5),
+                        "settings can be saved and loaded")
     dialog.press("OK")
     working = wait_for(lambda: not any(word in dialog.status() for word in
                                        ("confidence", "Drag", "Draft")), 10, step=.05)
     dialog.window.screenshot("running")
     # GIMP 3's have no name of ours and lie beside the controls.
-    names = ["Reset", "Estimate", "New seed"] + ["Save Settings", "Load Saved Settings"] * (
-        host.name == "3")
-    usable = [name for name in names
-              if dialog.named(name).getState().contains(pyatspi.STATE_SENSITIVE)]
+    usable = [name for name in buttons if is_sensitive(buttons[name])]
     dialog.tap.case(not usable, "Reset and all that changes settings wait for the run's end",
                     usable)
     start = time.monotonic()
@@ -209,15 +217,36 @@ def check_cancel(dialog, host):
     stopped = dialog.says("Stopped", seconds=5)
     took = time.monotonic() - start
     dialog.tap.case(working and stopped, "Cancel stops the run", dialog.status())
-    usable = wait_for(lambda: all(
-        dialog.named(name).getState().contains(pyatspi.STATE_SENSITIVE)
-        for name in names if name != "Load Saved Settings"), 5)
+    usable = wait_for(lambda: all(map(is_sensitive, buttons.values())), 5)
     dialog.tap.case(usable, "and they can be used again")
     dialog.tap.case(dialog.alive() and dialog.value("Slant") == slant,
                     "and keeps the dialog and its values", f"{took:.2f} s")
     print(f"# {took * 1000:.0f} ms from Cancel to the answer, as the accessibility tree sees it")
+    check_resumed(dialog, cancel)
     dialog.choose("Normal")
     dialog.choose("Copies within the plane")
+
+
+def check_resumed(dialog, cancel):
+    """What a stopped run interrupted goes on by itself, and takes no word from the answer."""
+    def stop_a_run():
+        dialog.press("OK")
+        time.sleep(.5)
+        dialog.window.press(cancel)
+        assert dialog.says("Stopped", seconds=8), dialog.status()
+    dialog.toggle("Draft result")
+    stop_a_run()
+    dialog.changes(lambda: None, "the draft comes after a stopped run", .02)
+    dialog.tap.case("Stopped" in dialog.status(), "and the answer stays", dialog.status())
+    dialog.toggle("Grid")
+    dialog.press("Estimate")
+    stop_a_run()
+    read = wait_for(lambda: dialog.value("Slant") != 80, 20)
+    dialog.tap.case(read, "an estimate goes on after a stopped run", dialog.status())
+    dialog.tap.case("Stopped" in dialog.status(), "and says nothing", dialog.status())
+    dialog.set("Slant", 80)
+    dialog.set("Tilt", 0)
+    dialog.tap.case(dialog.says("Drag", seconds=5), "until a control is moved", dialog.status())
 
 
 def check_fill_and_undo(dialog, window, frame, server, folder):

@@ -171,7 +171,7 @@ def check_beyond(host, tap, folder):
             continue
         made = xcf.Image(f"{folder}/sky-{alpha:d}.xcf").layers[0].values[..., -1].max(1)
         # With a field of view of 50 degrees it crosses row 38.4; the layer begins in row 10.
-        tap.case(not made[:28].any() and made[32:].all(), name, made)
+        tap.case(not made[:28].any() and made[32:].all(), name, list(made))
 
 
 def check_components(host, tap, folder):
