@@ -47,12 +47,13 @@ class Dialog:
         x, y, width, height = self.window.extents(self.preview)
         return shot[y : y + height, x : x + width].astype(int)
 
-    def changes(self, act, name, share=.002):
+    def changes(self, act, name, share=.002, seconds=12):
         """act makes at least that share of the preview's pixels different."""
         before = self.picture()
         start = time.monotonic()
         act()
-        good = wait_for(lambda: (np.abs(self.picture() - before).max(-1) > 12).mean() > share, 12)
+        good = wait_for(lambda: (np.abs(self.picture() - before).max(-1) > 12).mean() > share,
+                        seconds)
         self.tap.case(good is not None, name, f"after {time.monotonic() - start:.1f} s")
 
     def spin(self, label):
@@ -236,7 +237,7 @@ def check_resumed(dialog, cancel):
         assert dialog.says("Stopped", seconds=8), dialog.status()
     dialog.toggle("Draft result")
     stop_a_run()
-    dialog.changes(lambda: None, "the draft comes after a stopped run", .02)
+    dialog.changes(lambda: None, "the draft comes after a stopped run", .02, 60)
     dialog.tap.case("Stopped" in dialog.status(), "and the answer stays", dialog.status())
     dialog.toggle("Grid")
     dialog.press("Estimate")

@@ -177,7 +177,7 @@ def check_beyond(host, tap, folder):
 def check_components(host, tap, folder):
     """What the Channels dialog has switched off stays, and alpha that is locked."""
     off = "(gimp-image-set-component-active i CHANNEL-{} FALSE)"
-    select = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE 0 0 40 30)"  # over its fading corner
+    fading = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE 0 0 40 30)"
     for name, script, kept in (
             ("green and blue switched off", off.format("GREEN") + off.format("BLUE"), (1, 2)),
             ("alpha switched off", off.format("ALPHA"), (3,)),
@@ -185,7 +185,7 @@ def check_components(host, tap, folder):
         stem = folder / name.replace(" ", "-")
         output = host.run(
             f'(define i (t-load "{folder}/picture-1.png"))', "(define d (t-layer i))",
-            f"(gimp-image-convert-precision i {host.precision('u32-linear')})", select, script,
+            f"(gimp-image-convert-precision i {host.precision('u32-linear')})", fading, script,
             f'(t-save i "{stem}-before.xcf")', host.fill(orientation="angles", slant=35),
             f'(t-save i "{stem}-after.xcf")')
         if not host.done:

@@ -126,7 +126,7 @@ def errors(host):
     mask = "(car (gimp-layer-create-mask d ADD-MASK-WHITE))"
     yield ("the mask of a locked layer",
            f"(define m {mask})(gimp-layer-add-mask d m)(gimp-item-set-lock-content d TRUE)"
-           + select + host.fill(layer="m", **frontal), "are locked")
+           + select + host.fill(layer="m", **frontal), "group around it, are locked")
     yield ("floating", select + ("(gimp-edit-copy d)(define f (car (gimp-edit-paste d TRUE)))"
                                  if host.name == "2" else
                                  "(gimp-edit-copy (vector d))"
