@@ -129,7 +129,7 @@ def check_presets_2(dialog):
     dialog.press("Save preset")
     dialog.reset()
     settles_at(dialog, (1024, 768, 45), "Reset sets the defaults")
-    dialog.window.press(dialog.named("small"))
+    dialog.choose("small")
     settles_at(dialog, (300, 200, 60), "a preset brings its values back")
     dialog.set("Width", 320)
     text.setTextContents("")
@@ -139,7 +139,7 @@ def check_presets_2(dialog):
     settles_at(dialog, (320, 200, 60), "typing its name does not")
     dialog.press("Save preset")
     dialog.reset()
-    dialog.window.press(dialog.named("small"))
+    dialog.choose("small")
     settles_at(dialog, (320, 200, 60), "but lets it be saved anew")
 
 
