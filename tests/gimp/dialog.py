@@ -47,12 +47,13 @@ class Dialog:
         x, y, width, height = self.window.extents(self.preview)
         return shot[y : y + height, x : x + width].astype(int)
 
-    def changes(self, act, name, share=.002):
+    def changes(self, act, name, share=.002, seconds=12):
         """act makes at least that share of the preview's pixels different."""
         before = self.picture()
         start = time.monotonic()
         act()
-        good = wait_for(lambda: (np.abs(self.picture() - before).max(-1) > 12).mean() > share, 12)
+        good = wait_for(lambda: (np.abs(self.picture() - before).max(-1) > 12).mean() > share,
+                        seconds)
         self.tap.case(good is not None, name, f"after {time.monotonic() - start:.1f} s")
 
     def spin(self, label):
@@ -234,7 +235,8 @@ def check_resumed(dialog, cancel):
     dialog.set("Tilt", 1)  # whose draft has not begun yet when OK is pressed
     dialog.window.press(ok)
     time.sleep(.5)
-    dialog.changes(lambda: dialog.window.press(cancel), "the draft comes after a stopped run", .02)
+    dialog.changes(lambda: dialog.window.press(cancel), "the draft comes after a stopped run",
+                   seconds=40)
     dialog.tap.case(dialog.says("Stopped", seconds=1), "and the answer stays", dialog.status())
     dialog.toggle("Grid")
     dialog.window.press(estimate)

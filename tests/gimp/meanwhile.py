@@ -90,7 +90,7 @@ def check_painted(dialog, window, frame, server, folder):
              dialog.status() if dialog.alive() else "")
     after = server.save(folder / "after.xcf").layers[0].bytes
     tap.case(np.array_equal(before.layers[0].bytes, after), "from what is around it now",
-             after[y : y + height, x : x + width].reshape(-1, after.shape[2]).mean(0))
+             list(after[y : y + height, x : x + width].reshape(-1, after.shape[2]).mean(0)))
     for _ in range(4):  # the fill, the selection and both paints
         window.undo(frame)
 
