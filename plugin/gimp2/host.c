@@ -59,19 +59,18 @@ gboolean rp_host_open_other(const rp_host *host, int id, rp_drawable *drawable) 
   return TRUE;
 }
 
+/* GIMP tells of alpha in RGB images only; in gray ones it is taken to be on. */
 unsigned rp_host_components(const rp_host *host) {
-  static const GimpChannelType gray[] = {GIMP_CHANNEL_GRAY, GIMP_CHANNEL_ALPHA},
-                               rgb[] = {GIMP_CHANNEL_RED, GIMP_CHANNEL_GREEN, GIMP_CHANNEL_BLUE,
-                                        GIMP_CHANNEL_ALPHA};
-  unsigned components = 0;
+  static const GimpChannelType rgb[] = {GIMP_CHANNEL_RED, GIMP_CHANNEL_GREEN, GIMP_CHANNEL_BLUE,
+                                        GIMP_CHANNEL_ALPHA},
+                               gray[] = {GIMP_CHANNEL_GRAY};
+  unsigned off = 0;
   if (!gimp_item_is_layer(host->drawable)) return RP_ALL_COMPONENTS;
   gboolean is_gray = gimp_drawable_is_gray(host->drawable);
-  int alpha = is_gray ? 1 : 3;
-  for (int i = 0; i <= alpha; i++)
-    if (gimp_image_get_component_active(host->image, (is_gray ? gray : rgb)[i]))
-      components |= 1u << i;
-  if (gimp_layer_get_lock_alpha(host->drawable)) components &= ~(1u << alpha);
-  return components;
+  for (int i = 0; i < (is_gray ? 1 : 4); i++)
+    if (!gimp_image_get_component_active(host->image, (is_gray ? gray : rgb)[i])) off |= 1u << i;
+  if (gimp_layer_get_lock_alpha(host->drawable)) off |= is_gray ? 1u << 1 : 1u << 3;
+  return RP_ALL_COMPONENTS & ~off;
 }
 
 GeglBuffer *rp_host_open_shadow(const rp_host *host) {

@@ -101,6 +101,7 @@ def cases():
         yield "rgba", "u16", kind, None, {}
     yield "gray", "half-linear", "border", None, {}
     yield "graya", "float", "disjoint", OFFSET, {}
+    yield "graya", "u8", "border", None, {}
 
 
 def check_table(host, tap, folder):
