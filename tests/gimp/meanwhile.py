@@ -8,11 +8,15 @@ from window import wait_for
 SELECT = "(gimp-image-select-rectangle i CHANNEL-OP-REPLACE {} {} {} {})(gimp-displays-flush)"
 FILL_ALL = {"2": "gimp-edit-fill", "3": "gimp-drawable-edit-fill"}
 OLD, NEW = (330, 380, 300, 130), (100, 300, 350, 150)
-# A layer of its own to work on, e, and a channel that is white, c.
-ITEMS = ("(define e (car (gimp-layer-copy (t-layer i){})))(gimp-image-insert-layer i e 0 0)"
-         "(gimp-selection-all i)(define c (car (gimp-selection-save i)))(t-select-layer i e)")
+COPY = "(define {} (car (gimp-layer-copy (t-layer i){})))(gimp-image-insert-layer i {} 0 0)"
+# A channel that is white, c, beside a layer of its own to work on, e.
+ITEMS = "(gimp-selection-all i)(define c (car (gimp-selection-save i)))(t-select-layer i e)"
 SELECT_CHANNEL = {"2": "(gimp-image-set-active-channel i c)",
                   "3": "(gimp-image-set-selected-channels i (vector c))"}
+
+
+def copy_as(name, window):
+    return COPY.format(name, " FALSE" if window.host.name == "2" else "", name)
 
 
 def inside(layer, box):
@@ -45,7 +49,7 @@ def start_run(dialog):
 def check_before_ok(dialog, window, frame, server, folder):
     """Another selection while the dialog is open, and a lock."""
     tap = dialog.tap
-    server.run(ITEMS.format(" FALSE" if window.host.name == "2" else "") + SELECT.format(*OLD))
+    server.run(copy_as("e", window) + ITEMS + SELECT.format(*OLD))
     before = server.save(folder / "before.xcf")
     dialog.open(frame)
     dialog.set("Slant", 80)
@@ -73,26 +77,25 @@ def check_before_ok(dialog, window, frame, server, folder):
 def check_painted(dialog, window, frame, server, folder):
     """Painted over while the dialog is open, with the same selection: that is filled from."""
     tap, (x, y, width, height) = dialog.tap, OLD
-    server.run(SELECT.format(*OLD))
+    server.run(copy_as("p", window) + "(t-select-layer i p)" + SELECT.format(*OLD))
     dialog.open(frame)
     dialog.choose("Selection Mask")
     dialog.reset()
     tap.case(wait_for(lambda: dialog.chosen("Around the selection") == "Around the selection", 5),
              "Reset copies from around the selection", dialog.chosen("Around the selection"))
     dialog.set("Slant", 80)
-    server.run("(gimp-context-set-foreground '(0 255 0))(gimp-selection-none i)"
-               f"({FILL_ALL[window.host.name]} e FILL-FOREGROUND)" + SELECT.format(*OLD))
+    paint = f"({FILL_ALL[window.host.name]} p FILL-FOREGROUND)"
+    server.run("(gimp-context-set-foreground '(0 255 0))(gimp-selection-none i)" + paint
+               + SELECT.format(*OLD))
     before = server.save(folder / "before.xcf")
-    server.run("(gimp-context-set-foreground '(0 0 255))"
-               f"({FILL_ALL[window.host.name]} e FILL-FOREGROUND)(gimp-displays-flush)")
+    server.run(f"(gimp-context-set-foreground '(0 0 255)){paint}(gimp-displays-flush)")
     dialog.press("OK")
     tap.case(wait_for(lambda: not dialog.alive(), 40), "what was painted over is filled",
              dialog.status() if dialog.alive() else "")
     after = server.save(folder / "after.xcf").layers[0].bytes
     tap.case(np.array_equal(before.layers[0].bytes, after), "from what is around it now",
              list(after[y : y + height, x : x + width].reshape(-1, after.shape[2]).mean(0)))
-    for _ in range(4):  # the fill, the selection and both paints
-        window.undo(frame)
+    server.run("(gimp-image-remove-layer i p)(t-select-layer i e)")
 
 
 def check_channel(dialog, window, frame, server):
