@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "mask_file.h"
+#include "pixels.h"
 #include "safe_file.h"
 
 /* Pixels of a picture, without --memory: 350 megapixels of 8-bit RGB, 64 of float with alpha. The
@@ -131,10 +132,24 @@ command_exit command_open(const char *path, const options *given, image_file *fi
   return status == IMAGE_OK ? EXIT_DONE : command_refuse_image(path, status, &message);
 }
 
-command_exit command_read(image_file *file) {
+static bool copy_of(const recede_view *view, recede_view *copy) {
+  *copy = pixels_new(view->width, view->height, view->channels, view->type);
+  if (copy->data) memcpy(copy->data, view->data, view->stride_bytes * (size_t)view->height);
+  return copy->data != NULL;
+}
+
+command_exit command_read(image_file *file, recede_view *stored) {
   image_message message;
   image_status status = image_file_read(file, &message);
-  return status == IMAGE_OK ? EXIT_DONE : command_refuse_image(file->path, status, &message);
+  if (stored) stored->data = NULL;
+  if (status != IMAGE_OK) return command_refuse_image(file->path, status, &message);
+  if (!file->info.premultiplied || pixels_opaque(&file->view)) return EXIT_DONE;
+  if (stored && !copy_of(&file->view, stored)) {
+    command_complain(file->path, "not enough memory for its pixels");
+    return EXIT_LIMIT;
+  }
+  pixels_unpremultiply(&file->view);
+  return EXIT_DONE;
 }
 
 command_exit command_read_mask(const char *path, const options *given, const image_file *picture,

@@ -30,7 +30,10 @@ command_exit command_check_outputs(const options *given);
 
 /* Opens the picture's header; its pixels are limited by --memory, else to 1 GiB. */
 command_exit command_open(const char *path, const options *given, image_file *file);
-command_exit command_read(image_file *file);
+/* Reads its pixels; colours that are stored multiplied by alpha are divided by it, as the core
+ * wants them. stored: gets a copy of those as they were, to be freed by the caller, or {NULL} where
+ * none were divided; NULL: not wanted. */
+command_exit command_read(image_file *file, recede_view *stored);
 /* Reads a mask for the picture; *mask is to be freed by the caller. */
 command_exit command_read_mask(const char *path, const options *given, const image_file *picture,
                                recede_view *mask);

@@ -1,6 +1,5 @@
 /* recede fill IMAGE --mask MASK -o OUT */
 #include <stdlib.h>
-#include <string.h>
 
 #include "command.h"
 #include "pixels.h"
@@ -52,21 +51,8 @@ static command_exit read_inputs(fill *this) {
   if (code == EXIT_DONE) code = check_memory(this);
   if (code == EXIT_DONE && given->source)
     code = command_read_mask(given->source, given, &this->file, &this->source);
-  if (code == EXIT_DONE) code = command_read(&this->file);
+  if (code == EXIT_DONE) code = command_read(&this->file, &this->stored);
   return code;
-}
-
-static command_exit divide_by_alpha(fill *this) {
-  recede_view *view = &this->file.view;
-  if (!this->file.info.premultiplied || pixels_opaque(view)) return EXIT_DONE;
-  this->stored = pixels_new(view->width, view->height, view->channels, view->type);
-  if (!this->stored.data) {
-    command_complain(this->file.path, "not enough memory for its pixels");
-    return EXIT_LIMIT;
-  }
-  memcpy(this->stored.data, view->data, view->stride_bytes * (size_t)view->height);
-  pixels_unpremultiply(view);
-  return EXIT_DONE;
 }
 
 static command_exit run(fill *this) {
@@ -89,7 +75,6 @@ command_exit command_fill(options *given) {
   fill this = {.given = given};
   command_exit code = command_check_outputs(given);
   if (code == EXIT_DONE) code = read_inputs(&this);
-  if (code == EXIT_DONE) code = divide_by_alpha(&this);
   if (code == EXIT_DONE) code = run(&this);
   if (code == EXIT_DONE) code = command_write(given, &this.file.view, &this.file, true);
   if (code == EXIT_DONE) code = command_report(given, recede_job_report(this.job), NULL);

@@ -21,7 +21,7 @@ static command_exit read_inputs(orient *this) {
     code = command_read_mask(given->mask, given, &this->file, &this->mask);
   if (code == EXIT_DONE && given->source)
     code = command_read_mask(given->source, given, &this->file, &this->source);
-  if (code == EXIT_DONE) code = command_read(&this->file);
+  if (code == EXIT_DONE) code = command_read(&this->file, NULL);
   if (code == EXIT_DONE && !(this->job = command_job(given))) code = EXIT_LIMIT;
   return code;
 }

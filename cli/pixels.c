@@ -166,3 +166,19 @@ void pixels_premultiply_filled(const recede_view *result, const recede_view *ori
         scale_colours(result, x, y, pixels_get(result, x, y, result->channels - 1));
     }
 }
+
+void pixels_premultiply_around(const recede_view *result, const recede_view *divided,
+                               const recede_view *original) {
+  size_t bytes = (size_t)result->channels * pixels_type_bytes(result->type);
+  /* Either may be the larger: below 0 is what the result has no room for. */
+  int left = (result->width - divided->width) / 2, top = (result->height - divided->height) / 2;
+  for (int y = 0; y < result->height; y++)
+    for (int x = 0; x < result->width; x++) {
+      int sx = x - left, sy = y - top;
+      bool within = sx >= 0 && sy >= 0 && sx < divided->width && sy < divided->height;
+      if (within && memcmp(pixel_at(result, x, y), pixel_at(divided, sx, sy), bytes) == 0)
+        memcpy(pixel_at(result, x, y), pixel_at(original, sx, sy), bytes);
+      else
+        scale_colours(result, x, y, pixels_get(result, x, y, result->channels - 1));
+    }
+}

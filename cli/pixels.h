@@ -37,5 +37,9 @@ void pixels_premultiply(const recede_view *view);
 /* Of a result: where the mask is zero, the original's bits; else its colours times its alpha. */
 void pixels_premultiply_filled(const recede_view *result, const recede_view *original,
                                const recede_view *mask);
+/* Of a result with the divided exemplar, or a part of it, in its middle: what is unchanged there
+ * gets the original's bits; else colours are multiplied by alpha. */
+void pixels_premultiply_around(const recede_view *result, const recede_view *divided,
+                               const recede_view *original);
 
 #endif

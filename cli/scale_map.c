@@ -61,7 +61,7 @@ static command_exit read_input(scale_map *this) {
   }
   command_exit code = command_open(given->input, given, &this->file);
   if (code == EXIT_DONE) code = check_format(this);
-  if (code == EXIT_DONE) code = command_read(&this->file);
+  if (code == EXIT_DONE) code = command_read(&this->file, NULL);
   this->picture = this->file.view;
   return code;
 }

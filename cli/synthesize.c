@@ -8,6 +8,7 @@ typedef struct synthesis {
   options *given;
   image_file file;
   recede_view source, result;
+  recede_view stored; /* the exemplar's premultiplied colours; data NULL: it has none */
   recede_job *job;
 } synthesis;
 
@@ -49,8 +50,7 @@ static command_exit read_inputs(synthesis *this) {
   if (code == EXIT_DONE) code = check_memory(this);
   if (code == EXIT_DONE && given->source)
     code = command_read_mask(given->source, given, &this->file, &this->source);
-  if (code == EXIT_DONE) code = command_read(&this->file);
-  if (code == EXIT_DONE && this->file.info.premultiplied) pixels_unpremultiply(&this->file.view);
+  if (code == EXIT_DONE) code = command_read(&this->file, &this->stored);
   return code;
 }
 
@@ -68,7 +68,10 @@ static command_exit run(synthesis *this) {
   if (status == RECEDE_OK) status = recede_job_synthesize(this->job, &this->result);
   int number = command_signals_leave();
   command_exit code = command_finish(this->job, status, this->given);
-  return number ? (command_exit)(128 + number) : code;
+  if (number) return (command_exit)(128 + number);
+  if (code == EXIT_DONE && this->stored.data)
+    pixels_premultiply_around(&this->result, view, &this->stored);
+  return code;
 }
 
 command_exit command_synthesize(options *given) {
@@ -81,6 +84,7 @@ command_exit command_synthesize(options *given) {
   if (this.job) recede_job_free(&this.job);
   free(this.result.data);
   free(this.source.data);
+  free(this.stored.data);
   image_file_close(&this.file);
   return code;
 }
