@@ -9,13 +9,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "image_jpeg.h"
 #include "metadata.h"
 #include "pixels.h"
 
-/* No compressor packs photographs, nor nearly anything, tighter than 2000:1 (deflate's own limit is
- * 1032:1). A file that claims more, and much, is made to exhaust memory. */
-#define BOMB_RATIO 2000
-#define BOMB_BYTES ((uint64_t)64 << 20)
+/* What deflate can do at most: a PNG that claims more is made to exhaust memory. */
+#define BOMB_RATIO 1032
+/* Cameras and programs write some 10, tuned ones some 60; each takes the time of a pass over the
+ * whole picture, and two thousand fit in 1.5 MB. */
+#define MOST_SCANS 200
 
 static image_status fail(image_message *message, image_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -57,7 +59,8 @@ static image_status load(const char *path, uint64_t limit, image_bytes *bytes,
   else if (status.st_size == 0)
     result = fail(message, IMAGE_MALFORMED, "it is empty");
   else if ((uint64_t)status.st_size > limit)
-    result = fail(message, IMAGE_TOO_LARGE, "the file has %llu MiB, the limit is %llu MiB",
+    result = fail(message, IMAGE_TOO_LARGE,
+                  "the file has %llu MiB, the limit is %llu MiB (--memory raises it)",
                   (unsigned long long)status.st_size >> 20, (unsigned long long)limit >> 20);
   if (result == IMAGE_OK) {
     bytes->size = (size_t)status.st_size;
@@ -69,32 +72,50 @@ static image_status load(const char *path, uint64_t limit, image_bytes *bytes,
   return result;
 }
 
-static image_status check_before_decoder(const image_file *file, image_message *message) {
-  const unsigned char *data = file->bytes.data;
+static image_status check_limit(int width, int height, uint64_t bytes, uint64_t limit,
+                                image_message *message) {
+  if (bytes <= limit) return IMAGE_OK;
+  return fail(message, IMAGE_TOO_LARGE,
+              "its %d x %d px take %llu MiB, the limit is %llu MiB (--memory raises it)", width,
+              height, (unsigned long long)(bytes >> 20) + 1, (unsigned long long)limit >> 20);
+}
+
+static image_status check_jpeg(const image_file *file, uint64_t limit, image_message *message) {
+  image_jpeg jpeg = image_jpeg_walk(file->bytes.data, file->bytes.size);
+  if (jpeg.channels == 4)
+    return fail(message, IMAGE_UNSUPPORTED, "its colours are CMYK; convert it to RGB first");
+  if (!jpeg.whole)
+    return fail(message, IMAGE_MALFORMED, "the file is cut off: the JPEG's end is missing");
+  uint64_t bytes = pixels_bytes(jpeg.width, jpeg.height, jpeg.channels, RECEDE_U8);
+  image_status status =
+      check_limit(jpeg.width, jpeg.height, bytes + jpeg.coefficients, limit, message);
+  if (status != IMAGE_OK || jpeg.scans <= MOST_SCANS) return status;
+  return fail(
+      message, IMAGE_MALFORMED,
+      "its pixels come in %d scans, more than any picture needs (%d are read); save it anew",
+      jpeg.scans, MOST_SCANS);
+}
+
+static image_status check_before_decoder(const image_file *file, uint64_t limit,
+                                         image_message *message) {
   if (!file->format)
     return fail(message, IMAGE_MALFORMED, "it is no picture of a kind we read (%s)",
                 image_format_read());
-  if (strcmp(file->format->codec, "jpeg") != 0) return IMAGE_OK;
-  if (image_format_jpeg_channels(data, file->bytes.size) == 4)
-    return fail(message, IMAGE_UNSUPPORTED, "its colours are CMYK; convert it to RGB first");
-  if (!image_format_whole(file->format, data, file->bytes.size))
-    return fail(message, IMAGE_MALFORMED, "the file is cut off: the JPEG's end is missing");
-  return IMAGE_OK;
+  if (image_format_bmp_rle(file->format, file->bytes.data, file->bytes.size))
+    return fail(message, IMAGE_UNSUPPORTED,
+                "its pixels are compressed (RLE), which is not read in BMP; save it without");
+  return strcmp(file->format->codec, "jpeg") == 0 ? check_jpeg(file, limit, message) : IMAGE_OK;
 }
 
 static image_status check_size(const image_file *file, uint64_t limit, image_message *message) {
   const image_info *info = &file->info;
-  uint64_t bytes = pixels_bytes(info->width, info->height, info->channels, info->type);
-  if (bytes > BOMB_BYTES && bytes / BOMB_RATIO > file->bytes.size)
+  uint64_t packed = image_format_png_bytes(file->bytes.data, file->bytes.size);
+  if (packed / BOMB_RATIO > file->bytes.size)
     return fail(message, IMAGE_MALFORMED,
                 "%llu bytes of file cannot hold the %d x %d px that it claims",
                 (unsigned long long)file->bytes.size, info->width, info->height);
-  if (bytes > limit)
-    return fail(message, IMAGE_TOO_LARGE,
-                "its %d x %d px take %llu MiB, the limit is %llu MiB (--memory raises it)",
-                info->width, info->height, (unsigned long long)(bytes >> 20) + 1,
-                (unsigned long long)limit >> 20);
-  return IMAGE_OK;
+  uint64_t bytes = pixels_bytes(info->width, info->height, info->channels, info->type);
+  return check_limit(info->width, info->height, bytes, limit, message);
 }
 
 image_status image_file_open(const char *path, uint64_t limit, image_file *file,
@@ -105,7 +126,7 @@ image_status image_file_open(const char *path, uint64_t limit, image_file *file,
   image_status status = load(path, limit, &file->bytes, message);
   if (status != IMAGE_OK) return status;
   file->format = image_format_of_bytes(file->bytes.data, file->bytes.size, path);
-  status = check_before_decoder(file, message);
+  status = check_before_decoder(file, limit, message);
   if (status != IMAGE_OK) return status;
   status = image_decoder_new(file->format->codec, file->bytes.data, file->bytes.size,
                              &file->decoder, &file->info, message);
@@ -143,8 +164,12 @@ image_status image_file_read(image_file *file, image_message *message) {
   file->view = pixels_new(info->width, info->height, info->channels, info->type);
   if (!file->view.data) return fail(message, IMAGE_NO_MEMORY, "not enough memory for its pixels");
   image_status status = image_decoder_read(file->decoder, file->view.data, message);
-  return status == IMAGE_OK ? image_file_turn(&file->view, file->info.orientation, message)
-                            : status;
+  if (status != IMAGE_OK) return status;
+  /* OpenImageIO multiplies them by alpha, whatever it is asked for, and 8 bits do not come back. */
+  if (strcmp(file->format->codec, "webp") == 0 && !pixels_opaque(&file->view))
+    return fail(message, IMAGE_UNSUPPORTED,
+                "WebP's reader changes colours under transparency, which it has; save it as .png");
+  return image_file_turn(&file->view, info->orientation, message);
 }
 
 void image_file_close(image_file *file) {

@@ -93,58 +93,26 @@ bool image_format_lossy(const image_format *format) {
 
 static unsigned big16(const unsigned char *at) { return (unsigned)at[0] << 8 | at[1]; }
 
-/* Where the entropy-coded data that starts at `at` ends: the next marker that is no restart. */
-static size_t end_of_scan(const unsigned char *bytes, size_t size, size_t at) {
-  for (; at + 1 < size; at++) {
-    if (bytes[at] != 0xff || bytes[at + 1] == 0 || bytes[at + 1] == 0xff) continue;
-    if (bytes[at + 1] < 0xd0 || bytes[at + 1] > 0xd7) return at;
-  }
-  return size;
-}
-
-/* Walks a JPEG's segments. Returns whether its end was met; the channels of its frame in *channels.
- */
-static bool walk_jpeg(const unsigned char *bytes, size_t size, int *channels) {
-  size_t at = 2;
-  *channels = 0;
-  while (at + 4 <= size || (at + 2 <= size && bytes[at + 1] == 0xd9)) {
-    unsigned marker = bytes[at + 1];
-    if (bytes[at] != 0xff) return false;
-    if (marker == 0xd9) return true;
-    if (marker == 0xff) { /* fill byte */
-      at++;
-      continue;
-    }
-    if (marker == 0x01 || (marker >= 0xd0 && marker <= 0xd7)) { /* without a length */
-      at += 2;
-      continue;
-    }
-    size_t length = big16(bytes + at + 2);
-    bool frame =
-        marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-    if (frame && at + 10 <= size) *channels = bytes[at + 9];
-    at += 2 + length;
-    if (marker == 0xda) at = end_of_scan(bytes, size, at);
-  }
-  return false;
-}
-
-bool image_format_whole(const image_format *format, const unsigned char *bytes, size_t size) {
-  int channels;
-  return format != &formats[JPEG] || walk_jpeg(bytes, size, &channels);
-}
-
-int image_format_jpeg_channels(const unsigned char *bytes, size_t size) {
-  int channels;
-  walk_jpeg(bytes, size, &channels);
-  return channels;
-}
-
 bool image_format_png_header(const unsigned char *bytes, size_t size, int *bits, bool *indexed) {
   if (size < 33 || image_format_of_bytes(bytes, size, "") != &formats[PNG]) return false;
   *bits = bytes[24];
   *indexed = bytes[25] == 3;
   return true;
+}
+
+uint64_t image_format_png_bytes(const unsigned char *bytes, size_t size) {
+  static const unsigned samples[] = {1, 0, 3, 1, 2, 0, 4}; /* of a pixel, by the kind of colours */
+  if (size < 33 || image_format_of_bytes(bytes, size, "") != &formats[PNG] || bytes[25] > 6)
+    return 0;
+  uint64_t width = (uint64_t)big16(bytes + 16) << 16 | big16(bytes + 18);
+  uint64_t height = (uint64_t)big16(bytes + 20) << 16 | big16(bytes + 22);
+  return height * ((width * bytes[24] * samples[bytes[25]] + 7) / 8);
+}
+
+/* From 40 bytes on the header says how the pixels are packed; 1 and 2 are RLE. */
+bool image_format_bmp_rle(const image_format *format, const unsigned char *bytes, size_t size) {
+  if (format != &formats[BMP] || size < 34 || (bytes[14] < 40 && !bytes[15])) return false;
+  return (bytes[30] == 1 || bytes[30] == 2) && !bytes[31] && !bytes[32] && !bytes[33];
 }
 
 /* APNG says so before the pixels, in a chunk "acTL"; WebP in the flags of its chunk "VP8X". */

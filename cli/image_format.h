@@ -31,16 +31,14 @@ const char *image_format_written(void);
 bool image_format_lossy(const image_format *format);
 bool image_format_holds(const image_format *format, recede_type type);
 
-/* false: the bytes are surely no whole file (a JPEG without its end, which decoders take for a
- * picture with a gray lower half). */
-bool image_format_whole(const image_format *format, const unsigned char *bytes, size_t size);
-
-/* Colour channels as stored in a JPEG (4 is CMYK, whatever the decoder makes of it); 0: none said.
- */
-int image_format_jpeg_channels(const unsigned char *bytes, size_t size);
 /* An animated PNG or WebP, of which decoders give the first picture. */
 bool image_format_animated(const image_format *format, const unsigned char *bytes, size_t size);
 /* A PNG with a palette; its depth in *bits. */
 bool image_format_png_header(const unsigned char *bytes, size_t size, int *bits, bool *indexed);
+/* Bytes of a PNG's pixels before they were packed, of one that was opened (its sides are below a
+ * million); 0: it is none. */
+uint64_t image_format_png_bytes(const unsigned char *bytes, size_t size);
+/* A BMP whose pixels are packed in a way that the decoder takes for damage. */
+bool image_format_bmp_rle(const image_format *format, const unsigned char *bytes, size_t size);
 
 #endif

@@ -73,6 +73,22 @@ def write_tiff(path, rgba, extra_samples, big=False):
     return path
 
 
+def test_webp_with_transparency_is_refused(folder):
+    """Its reader darkens the colours; without transparency, or all opaque, it is read."""
+    pixels = texture(channels=4)
+    for alpha, code in ((200, 3), (255, 0)):
+        pixels[:, :9, 3] = alpha
+        image = folder / "in.webp"
+        check(harness.cv2.imwrite(str(image), pixels, [harness.cv2.IMWRITE_WEBP_QUALITY, 101]))
+        mask = write(folder / "mask.png", hole())
+        plain = write(folder / "in.png", texture())
+        done = recede("fill", image, "--mask", mask, "--frontal", "-o", folder / "out.png",
+                      code=code)
+        check(code == 0 or b"save it as .png" in done.stderr, done.stderr)
+        done = recede("orient", plain, "--frontal", "--mask", image, code=code)
+        check(code == 0 or b"save it as .png" in done.stderr, done.stderr)
+
+
 def test_premultiplied_exemplars(folder):
     """An exemplar of multiplied colours is the middle of the result bit for bit, and what lies
     around is as bright as it."""

@@ -231,6 +231,50 @@ def test_a_true_bomb_takes_no_memory(folder):
         refused(many, path, codes=(5,))
 
 
+def test_progressive_bombs(folder):
+    """Decoders begin to decode these when they are opened, and keep all coefficients: the size, with
+    these, and the passes over the picture are looked at before."""
+    data = originals(folder)["progressive.jpg"]
+    frame, scan = data.index(b"\xff\xc2"), data.rindex(b"\xff\xda")
+    huge = folder / "huge.jpg"
+    huge.write_bytes(data[:frame + 5] + struct.pack(">HH", 65500, 65500) + data[frame + 9:])
+    many_scans = folder / "scans.jpg"
+    many_scans.write_bytes(data[:scan] + data[scan:-2] * 300 + b"\xff\xd9")
+    with commands(folder) as many:
+        for path, code, word in ((huge, 5, b"65500 x 65500"), (many_scans, 3, b"scans")):
+            done = many.run("orient", path, "--frontal")
+            check(done.returncode == code and word in done.stderr, path.name, done)
+        large = folder / "large.jpg"
+        subprocess.run(["convert", "-size", "2000x2000", "gradient:red-blue", "-interlace", "Plane",
+                        str(large)], check=True)
+        for memory, code in ((12, 5), (99, 0)):  # 11.4 MiB of pixels, and twice that
+            done = many.run("orient", large, "--frontal", "--memory", memory)
+            check(done.returncode == code, memory, done)
+
+
+def test_stray_bytes_between_segments(folder):
+    """Decoders skip them, and so it is no sign that the file was cut."""
+    data = originals(folder)["jpg"]
+    tables = data.index(b"\xff\xdb")
+    path = folder / "stray.jpg"
+    path.write_bytes(data[:tables] + b"\0\1\xff\0\2" + data[tables:])
+    with commands(folder) as many:
+        check(read_with(many, path) == 0)
+        path.write_bytes(path.read_bytes()[:-2])
+        refused(many, path)
+
+
+def test_large_plain_masks_are_read(folder):
+    """Drawn masks pack best: what counts is what is packed, a byte a pixel and less."""
+    packed = zlib.compress(bytes(6001) * 4000, 9)
+    plain = png_of(6000, 4000, packed, 8, 3)
+    path = folder / "indexed.png"
+    path.write_bytes(plain[:33] + png_chunk(b"PLTE", bytes(3)) + plain[33:])
+    with commands(folder) as many:
+        done = many.run("orient", path, "--frontal")
+        check(done.returncode == 0, done)
+
+
 def test_a_cut_mask_is_refused(folder):
     mask = np.full((40, 56), 255, np.uint8)
     mask[:30] = 0

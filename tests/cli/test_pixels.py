@@ -202,8 +202,9 @@ def test_what_cannot_be_kept_is_refused_by_name(folder):
     run_convert(folder / "plain.png", "-colorspace", "Lab", folder / "lab.tif")
     run_convert(folder / "plain.png", "-define", "quantum:format=floating-point", "-depth", "64",
                 folder / "double.tif")
+    run_convert(folder / "plain.png", "-type", "Palette", "-compress", "RLE", folder / "packed.bmp")
     for name, word in (("cmyk.jpg", "CMYK"), ("cmyk.tif", "CMYK"), ("lab.tif", "L*a*b*"),
-                       ("double.tif", "double")):
+                       ("double.tif", "double"), ("packed.bmp", "RLE")):
         done = recede("fill", folder / name, "--mask", mask, "--frontal", "-o", folder / "out.png",
                       code=3)
         check(word.encode() in done.stderr, name, done.stderr)
