@@ -25,6 +25,11 @@
 /* Of 10 degrees: readings farther apart are of another plane. */
 #define ANOTHER_PLANE_COSINE .985
 
+/* A picture much larger than the frame it is the middle of would be seen at 180 degrees: the
+ * parameter's own limits. */
+#define LEAST_FOV_DEG 1
+#define MOST_FOV_DEG 170
+
 /* Measured, of the small copy: 37 bytes a pixel, and for each thread .3 and 60 KB. Of a row of the
  * picture: five floats a pixel and what they are. */
 #define BYTES_PER_PX 40
@@ -53,11 +58,12 @@ static recede_status read_plane(rc_context *context, double fov_deg, const rc_vi
   const double small_on[2] = {(on[0] + .5) / factor - .5, (on[1] + .5) / factor - .5};
   RC_TRY(recede_plane_from_angles(width, height, 0, 0, fov_deg, &frame));
   double fov_of_picture = 2 * atan(.5 * longest / frame.focal_px) * (180 / 3.14159265358979323846);
+  fov_of_picture = fmin(fmax(fov_of_picture, LEAST_FOV_DEG), MOST_FOV_DEG);
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_shrink(context, views, factor, &image, &flags));
   *chosen = rc_sources_are_chosen(&flags);
-  RC_TRY(rc_estimate_plane(context, &image, &flags, fmax(fov_of_picture, 1),
-                           views->mask ? small_on : NULL, plane, &orientation->confidence));
+  RC_TRY(rc_estimate_plane(context, &image, &flags, fov_of_picture, views->mask ? small_on : NULL,
+                           plane, &orientation->confidence));
   rc_release(context, mark);
   plane->focal_px = frame.focal_px;
   plane->width = width;
