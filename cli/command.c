@@ -190,11 +190,27 @@ static command_exit exit_for(recede_status status, const options *given) {
 
 command_exit command_finish(const recede_job *job, recede_status status, const options *given) {
   command_progress_clear();
-  if (status != RECEDE_OK) command_complain(NULL, recede_job_message(job));
+  const char *message = recede_job_message(job);
+  if (status != RECEDE_OK)
+    command_complain(NULL, message[0] ? message : "it failed and gave no reason: please report it");
   return exit_for(status, given);
 }
 
 /* ---------------------------------------------------------------------------------- output -- */
+
+command_exit command_check_format(const options *given, const image_file *file, int width,
+                                  int height) {
+  image_message message;
+  if (!image_file_can_write(given->output, file, width, height, file->info.type, &message))
+    return command_refuse_image(given->output, IMAGE_OUTPUT, &message);
+  if (file->info.several && safe_file_same(given->output, given->input)) {
+    command_complain(given->output,
+                     "it holds several pictures, of which one would be left; give another name");
+    return EXIT_OUTPUT;
+  }
+  command_warn(given, given->output, message.text);
+  return EXIT_DONE;
+}
 
 static command_exit check_output(const char *path, const options *given) {
   char message[300];
@@ -203,28 +219,31 @@ static command_exit check_output(const char *path, const options *given) {
   return EXIT_OUTPUT;
 }
 
-/* The report must not replace a picture, not even with --force. */
-static command_exit check_json(const options *given) {
-  const struct {
-    const char *path, *what;
-  } pictures[] = {{given->output, "-o"},
-                  {given->input, "the picture"},
-                  {given->mask, "--mask"},
-                  {given->source, "--source"}};
-  for (size_t i = 0; i < sizeof pictures / sizeof *pictures; i++)
-    if (pictures[i].path && safe_file_same(given->json, pictures[i].path)) {
-      char text[100];
-      snprintf(text, sizeof text, "--json names the same file as %s; give it another name",
-               pictures[i].what);
-      command_complain(given->json, text);
-      return EXIT_USAGE;
-    }
-  return check_output(given->json, given);
+static command_exit check_apart(const char *option, const char *path, const char *other,
+                                const char *what) {
+  char text[100];
+  if (!path || !other || !safe_file_same(path, other)) return EXIT_DONE;
+  snprintf(text, sizeof text, "%s names the same file as %s; give it another name", option, what);
+  command_complain(path, text);
+  return EXIT_USAGE;
+}
+
+/* Not even with --force a report replaces a picture, or a picture the mask that it was made with.
+ * The picture itself may be replaced by its fill. */
+static command_exit check_all_apart(const options *given, const char *json) {
+  command_exit code = check_apart("-o", given->output, given->mask, "--mask");
+  if (code == EXIT_DONE) code = check_apart("-o", given->output, given->source, "--source");
+  if (code == EXIT_DONE) code = check_apart("--json", json, given->output, "-o");
+  if (code == EXIT_DONE) code = check_apart("--json", json, given->input, "the picture");
+  if (code == EXIT_DONE) code = check_apart("--json", json, given->mask, "--mask");
+  if (code == EXIT_DONE) code = check_apart("--json", json, given->source, "--source");
+  return code;
 }
 
 command_exit command_check_outputs(const options *given) {
-  command_exit code = EXIT_DONE;
-  if (given->json && strcmp(given->json, "-") != 0) code = check_json(given);
+  const char *json = given->json && strcmp(given->json, "-") != 0 ? given->json : NULL;
+  command_exit code = check_all_apart(given, json);
+  if (code == EXIT_DONE && json) code = check_output(json, given);
   if (code == EXIT_DONE && given->output) code = check_output(given->output, given);
   return code;
 }

@@ -28,6 +28,11 @@ command_exit command_refuse_image(const char *name, image_status status,
 /* Whether the output, and the JSON file, could be written; asked before any work. */
 command_exit command_check_outputs(const options *given);
 
+/* Whether the output's format can hold a result of that size made from the picture, and its file
+ * may be replaced by it; says what the format will do to it. Asked before any pixel is read. */
+command_exit command_check_format(const options *given, const image_file *file, int width,
+                                  int height);
+
 /* Opens the picture's header; its pixels are limited by --memory, else to 1 GiB. */
 command_exit command_open(const char *path, const options *given, image_file *file);
 /* Reads its pixels; colours that are stored multiplied by alpha are divided by it, as the core

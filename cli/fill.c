@@ -13,14 +13,14 @@ typedef struct fill {
   recede_job *job;
 } fill;
 
-static command_exit check_format(const fill *this) {
+/* The fill is opaque: what JPEG and the like cannot hold is known before it is made. */
+static command_exit check_alpha(const fill *this) {
   image_message message;
-  const image_file *file = &this->file;
-  bool good = image_file_can_write(this->given->output, file, file->view.width, file->view.height,
-                                   file->info.type, &message);
-  if (!good) return command_refuse_image(this->given->output, IMAGE_OUTPUT, &message);
-  command_warn(this->given, this->given->output, message.text);
-  return EXIT_DONE;
+  const recede_view *view = &this->file.view;
+  if (image_file_holds_alpha(this->given->output, view->channels, &message) ||
+      pixels_opaque_outside(view, &this->mask))
+    return EXIT_DONE;
+  return command_refuse_image(this->given->output, IMAGE_OUTPUT, &message);
 }
 
 /* Memory is judged before any pixel of the picture is read: the core looks at the mask alone, and
@@ -43,7 +43,8 @@ static command_exit check_memory(fill *this) {
 static command_exit read_inputs(fill *this) {
   options *given = this->given;
   command_exit code = command_open(given->input, given, &this->file);
-  if (code == EXIT_DONE) code = check_format(this);
+  const recede_view *view = &this->file.view;
+  if (code == EXIT_DONE) code = command_check_format(given, &this->file, view->width, view->height);
   if (code == EXIT_DONE) code = command_read_mask(given->mask, given, &this->file, &this->mask);
   if (code == EXIT_DONE && !(this->job = command_job(given))) code = EXIT_LIMIT;
   if (code == EXIT_DONE)
@@ -52,6 +53,7 @@ static command_exit read_inputs(fill *this) {
   if (code == EXIT_DONE && given->source)
     code = command_read_mask(given->source, given, &this->file, &this->source);
   if (code == EXIT_DONE) code = command_read(&this->file, &this->stored);
+  if (code == EXIT_DONE) code = check_alpha(this);
   return code;
 }
 

@@ -197,11 +197,26 @@ static bool written_type(const image_format *format, recede_type type, recede_ty
   return image_format_holds(format, *written) && is_float(*written) == is_float(type);
 }
 
-static int written_channels(const image_format *format, int channels) {
-  if (format->channels & (1u << channels)) return channels;
-  int opaque = channels - (channels % 2 == 0);
-  if (format->channels & (1u << opaque)) return opaque;
-  return channels % 2 == 0 && (format->channels & (1u << 4)) ? 4 : 3;
+static bool has_alpha(int channels) { return channels % 2 == 0; }
+
+/* Alpha that is 1 everywhere may go; else gray with alpha becomes RGB with alpha where only that is
+ * held. */
+static int written_channels(const image_format *format, int channels, bool opaque) {
+  const int colours = channels - has_alpha(channels);
+  const int wanted[] = {channels, opaque ? colours : channels, has_alpha(channels) ? 4 : 3,
+                        colours};
+  for (int i = 0; i < 4; i++)
+    if (format->channels & (1u << wanted[i])) return wanted[i];
+  return 3;
+}
+
+bool image_file_holds_alpha(const char *path, int channels, image_message *message) {
+  const image_format *format = image_format_of_name(path);
+  if (!has_alpha(channels) || (format && has_alpha(written_channels(format, channels, false))))
+    return true;
+  fail(message, IMAGE_OUTPUT, "%s has no transparency, which the picture has; use .png or .tif",
+       format ? format->name : "it");
+  return false;
 }
 
 static void note(image_message *message, const char *format, ...)
@@ -266,17 +281,20 @@ bool image_file_can_write(const char *path, const image_file *like, int width, i
 
 /* In stored order, in a type and with channels that the format holds; data is fresh memory, or
  * seen's own where nothing has to change. */
-static image_status storable(const image_format *format, const recede_view *seen, int orientation,
+static image_status storable(const char *path, const recede_view *seen, int orientation,
                              recede_view *stored, image_message *message) {
+  const image_format *format = image_format_of_name(path);
   recede_type type;
-  int channels = written_channels(format, seen->channels);
+  bool opaque = pixels_opaque(seen);
+  int channels = written_channels(format, seen->channels, opaque);
   *stored = *seen;
   if (!written_type(format, seen->type, &type))
     return fail(message, IMAGE_OUTPUT, "%s cannot hold %s samples", format->name,
                 type_name(seen->type));
-  if (channels % 2 == 1 && seen->channels % 2 == 0 && !pixels_opaque(seen))
-    return fail(message, IMAGE_OUTPUT,
-                "%s has no transparency, which the picture has; use .png or .tif", format->name);
+  if (!opaque && !has_alpha(channels)) {
+    image_file_holds_alpha(path, seen->channels, message);
+    return IMAGE_OUTPUT;
+  }
   if (type != seen->type || channels != seen->channels) {
     *stored = pixels_new(seen->width, seen->height, channels, type);
     if (!stored->data) return fail(message, IMAGE_NO_MEMORY, "not enough memory to write");
@@ -313,7 +331,7 @@ image_status image_file_encode(const char *path, const recede_view *seen, const 
   if (!format) return fail(message, IMAGE_OUTPUT, "its suffix names no format we write");
   /* A format that cannot carry the tag gets the picture as it is seen. */
   int orientation = keep && metadata_carries_orientation(like, format) ? like->info.orientation : 1;
-  image_status status = storable(format, seen, orientation, &stored, message);
+  image_status status = storable(path, seen, orientation, &stored, message);
   /* The view's colours are stored the source's way; a JPEG and the like has none to be multiplied.
    */
   bool premultiplied = like && like->info.premultiplied;

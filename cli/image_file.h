@@ -36,6 +36,11 @@ void image_file_close(image_file *file);
 bool image_file_can_write(const char *path, const image_file *like, int width, int height,
                           recede_type type, image_message *message);
 
+/* Whether the output's format has transparency, if the picture has; false: message says what to
+ * use.
+ */
+bool image_file_holds_alpha(const char *path, int channels, image_message *message);
+
 /* Encodes a picture as seen. like: where metadata, orientation, compression come from; NULL: none.
  * keep: it is the same picture, so Exif, XMP, IPTC and the turn of the stored rows stay; else only
  * the colour profile and the resolution do. message: why not, or on IMAGE_OK "" or a warning. */

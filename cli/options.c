@@ -117,7 +117,7 @@ static void add_params(GOptionGroup *group, options_of command, bool orientation
 static void add_files(GOptionGroup *group, options_of command, options *given) {
   GOptionEntry output[] = {ENTRY("output", 'o', FILENAME, output,
                                  "The picture to write; its suffix says the format", "OUT"),
-                           ENTRY("force", 0, NONE, force, "Replace files that exist", NULL), END};
+                           END};
   GOptionEntry mask[] = {ENTRY("mask", 0, FILENAME, mask,
                                "White is to be filled, gray is blended, black stays", "MASK"),
                          END};
@@ -146,6 +146,7 @@ static void add_common(GOptionGroup *group, options *given) {
       ENTRY("memory", 0, STRING, memory_text, "Limit (default: three quarters of the machine's)",
             "MiB"),
       ENTRY("json", 0, FILENAME, json, "Write a report as JSON; -: to standard output", "FILE|-"),
+      ENTRY("force", 0, NONE, force, "Replace files that exist", NULL),
       ENTRY("quiet", 'q', NONE, quiet, "No progress and no warnings", NULL),
       {"set", 0, 0, G_OPTION_ARG_CALLBACK, (gpointer)on_set,
        "Set any parameter, developers' ones too (once for each)", "KEY=VALUE"},
@@ -222,6 +223,21 @@ static gboolean read_orientation(options *given, GError **error) {
   return TRUE;
 }
 
+/* "" would be found missing only after the work, and said without a name. */
+static gboolean check_names(const options *given, GError **error) {
+  const struct {
+    const char *name, *what;
+  } names[] = {{given->output, "-o"},
+               {given->json, "--json"},
+               {given->mask, "--mask"},
+               {given->source, "--source"},
+               {given->input, "The picture"}};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (names[i].name && !names[i].name[0])
+      return refuse(error, "%s: the file's name is empty", names[i].what);
+  return TRUE;
+}
+
 static gboolean read_inputs(options_of command, options *given, GError **error) {
   const char *what = command == SYNTHESIZE ? "EXEMPLAR" : "IMAGE";
   guint count = given->inputs ? g_strv_length(given->inputs) : 0;
@@ -244,7 +260,8 @@ static gboolean read_inputs(options_of command, options *given, GError **error) 
 
 static gboolean read_given(options_of command, options *given, GError **error) {
   return read_numbers(given, error) && read_size(given, error) && read_kind(given, error) &&
-         read_orientation(given, error) && read_inputs(command, given, error);
+         read_orientation(given, error) && read_inputs(command, given, error) &&
+         check_names(given, error);
 }
 
 static const struct {

@@ -94,12 +94,19 @@ static int alpha_of(const recede_view *view) {
   return view->channels == 2 || view->channels == 4 ? view->channels - 1 : -1;
 }
 
-bool pixels_opaque(const recede_view *view) {
+static bool opaque(const recede_view *view, const recede_view *mask) {
   int alpha = alpha_of(view);
   for (int y = 0; alpha >= 0 && y < view->height; y++)
     for (int x = 0; x < view->width; x++)
-      if (pixels_get(view, x, y, alpha) != 1) return false;
+      if (pixels_get(view, x, y, alpha) != 1 && !(mask && pixels_get(mask, x, y, 0) > 0))
+        return false;
   return true;
+}
+
+bool pixels_opaque(const recede_view *view) { return opaque(view, NULL); }
+
+bool pixels_opaque_outside(const recede_view *view, const recede_view *mask) {
+  return opaque(view, mask);
 }
 
 void pixels_convert(const recede_view *from, const recede_view *to) {

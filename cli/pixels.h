@@ -23,6 +23,8 @@ void pixels_turn(const recede_view *from, int orientation, const recede_view *to
 
 /* Is every pixel opaque? True without alpha. */
 bool pixels_opaque(const recede_view *view);
+/* And where the mask is zero? */
+bool pixels_opaque_outside(const recede_view *view, const recede_view *mask);
 /* Copies into another type and number of channels: gray spreads to RGB, alpha is dropped or 1. From
  * RGB to gray there is no way here. */
 void pixels_convert(const recede_view *from, const recede_view *to);

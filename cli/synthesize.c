@@ -12,16 +12,6 @@ typedef struct synthesis {
   recede_job *job;
 } synthesis;
 
-static command_exit check_format(const synthesis *this) {
-  image_message message;
-  const options *given = this->given;
-  bool good = image_file_can_write(given->output, &this->file, given->width, given->height,
-                                   this->file.info.type, &message);
-  if (!good) return command_refuse_image(given->output, IMAGE_OUTPUT, &message);
-  command_warn(given, given->output, message.text);
-  return EXIT_DONE;
-}
-
 /* Before any pixel is read; see fill. */
 static command_exit check_memory(synthesis *this) {
   uint64_t bytes;
@@ -43,7 +33,8 @@ static command_exit check_memory(synthesis *this) {
 static command_exit read_inputs(synthesis *this) {
   options *given = this->given;
   command_exit code = command_open(given->input, given, &this->file);
-  if (code == EXIT_DONE) code = check_format(this);
+  if (code == EXIT_DONE)
+    code = command_check_format(given, &this->file, given->width, given->height);
   if (code == EXIT_DONE && !(this->job = command_job(given))) code = EXIT_LIMIT;
   if (code == EXIT_DONE)
     code = command_finish(this->job, recede_job_set_params(this->job, &given->params), given);

@@ -73,6 +73,24 @@ def write_tiff(path, rgba, extra_samples, big=False):
     return path
 
 
+def test_gray_with_alpha_into_bmp(folder):
+    """BMP has no gray with alpha, but RGB with alpha."""
+    gray = texture()[:, :, 1]
+    alpha = np.full_like(gray, 255)
+    alpha[:, :9] = 100
+    write(folder / "rgba.png", np.dstack([gray, gray, gray, alpha]))
+    image = folder / "in.png"
+    subprocess.run(["convert", folder / "rgba.png", "-define", "png:color-type=4", image],
+                   check=True)
+    mask = write(folder / "mask.png", hole())
+    for suffix in ("png", "bmp"):
+        recede("fill", image, "--mask", mask, "--frontal", "-o", folder / f"out.{suffix}")
+    subprocess.run(["convert", folder / "out.bmp", "png32:" + str(folder / "bmp.png")], check=True)
+    subprocess.run(["convert", folder / "out.png", "png32:" + str(folder / "png.png")], check=True)
+    check(same_bits(read(folder / "bmp.png"), read(folder / "png.png")))
+    check(read(folder / "bmp.png")[5, 5, 3] == 100, "no alpha")
+
+
 def test_webp_with_transparency_is_refused(folder):
     """Its reader darkens the colours; without transparency, or all opaque, it is read."""
     pixels = texture(channels=4)

@@ -174,8 +174,30 @@ def test_the_report_replaces_no_picture(folder):
         done = recede("fill", image, "--mask", mask, "--source", source, "-o", folder / "out.png",
                       "--frontal", "--force", "--json", f"{folder}/{name}", code=2)
         check(b"--json names the same file" in done.stderr, name, done.stderr)
-    recede("orient", image, "--slant", "9", "--json", image, "--force", code=2)
+    done = recede("orient", image, "--slant", "9", "--json", image, "--force", code=2)
+    check(b"--json names the same file as the picture" in done.stderr, done.stderr)
     check({path: path.read_bytes() for path in folder.iterdir()} == before, "a file changed")
+
+
+def test_a_report_may_replace_a_report(folder):
+    image, _ = pair(folder)
+    to = folder / "report.json"
+    for slant in (20, 30):
+        recede("orient", image, "--slant", slant, "--json", to, "--force", "-q")
+        check(abs(json.loads(to.read_text())["orientation"]["slant_deg"] - slant) < 1e-9)
+    check(b"--force" in recede("orient", image, "--slant", "9", "--json", to, code=4).stderr)
+
+
+def test_empty_names(folder):
+    image, mask = pair(folder)
+    out = folder / "out.png"
+    good = {"--mask": mask, "-o": out, "--source": mask, "--json": folder / "report.json"}
+    for name in good:
+        words = [word for pair_ in {**good, name: ""}.items() for word in pair_]
+        done = recede("fill", image, *words, "--frontal", code=2)
+        check(name.encode() + b": the file's name is empty" in done.stderr, done.stderr)
+    recede("orient", "", "--frontal", code=2)
+    check(not out.exists())
 
 
 def test_seed_holds_the_hash(folder):
@@ -303,6 +325,14 @@ def test_synthesize(folder):
             pixels = read(out)
             check(pixels.shape == (56, 80, 3) and pixels.dtype == np.uint16, pixels.shape)
             check(pixels.std() > 1000, "a flat result")
+
+
+def test_an_exemplar_much_larger_than_the_result(folder):
+    """Its field of view would be nearly 180 degrees; read from it is the result's orientation."""
+    image = write(folder / "in.png", texture(480, 640))
+    done = recede("synthesize", image, "--size", "20x15", "-o", folder / "out.png", code=None)
+    check(done.returncode == 0 or len(done.stderr) > 20, done)
+    check(done.returncode in (0, 1), done)
 
 
 def test_an_exemplar_seen_from_the_front(folder):

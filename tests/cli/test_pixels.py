@@ -228,6 +228,10 @@ def test_what_the_output_cannot_hold(folder):
     check(b".exr or .tif" in fill("float", "png", 4))
     check(b".png or .tif" in fill("u8", "exr", 4))
     check(b"transparency" in fill("glass", "jpg", 4))
+    # Before the work, in which it would be found that there is nothing to copy from.
+    nothing = write(folder / "nothing.png", np.zeros((48, 64), np.uint8))
+    recede("fill", images["glass"], "--mask", mask, "--source", nothing, "--frontal", "-o",
+           folder / "never.jpg", code=4)
     check(b"reduced to 8" in fill("u16", "jpg", 0))
     check(b"32 bits" in fill("half", "tif", 0) and fill("half", "exr", 0) == b"")
     check(b"rounds every pixel" in fill("float", "hdr", 0))

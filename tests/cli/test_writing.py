@@ -67,6 +67,33 @@ def test_the_input_may_be_the_output(folder):
     check((folder / "in.png").read_bytes() == whole)
 
 
+def test_other_inputs_may_not_be_the_output(folder):
+    arguments = job(folder)
+    mask = folder / "mask.png"
+    source = write(folder / "source.png", 255 - hole())
+    (folder / "link.png").symlink_to("source.png")
+    before = mask.read_bytes(), source.read_bytes()
+    for name, option in (("mask.png", b"--mask"), ("source.png", b"--source"),
+                         ("link.png", b"--source")):
+        done = recede(*arguments, "--source", source, "-o", folder / name, "--force", code=2)
+        check(b"the same file as " + option in done.stderr, done.stderr)
+    recede("synthesize", folder / "in.png", "--source", source, "--size", "9x9", "--frontal", "-o",
+           source, "--force", code=2)
+    check((mask.read_bytes(), source.read_bytes()) == before, "a mask was replaced")
+
+
+def test_the_other_pages_stay(folder):
+    """A file of several pictures is not replaced by the one of them that was filled."""
+    write(folder / "a.png", texture())
+    pages = folder / "pages.tif"
+    subprocess.run(["convert", folder / "a.png", folder / "a.png", pages], check=True)
+    before = pages.read_bytes()
+    mask = write(folder / "mask.png", hole())
+    for command in (["fill", pages, "--mask", mask], ["synthesize", pages, "--size", "70x50"]):
+        done = recede(*command, "--frontal", "-o", pages, "--force", code=4)
+        check(b"another name" in done.stderr and pages.read_bytes() == before, done.stderr)
+
+
 def test_links_and_permissions_stay(folder):
     arguments = job(folder)
     target = folder / "target.png"
