@@ -97,7 +97,9 @@ static void on_signal(int number) {
 
 void command_signals_init(void) {
   struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
-  static const int ending[] = {SIGINT, SIGTERM, SIGHUP};
+  /* All that a shell, a batch system or a limit of time ends a process with. */
+  static const int ending[] = {SIGINT,  SIGTERM, SIGHUP,  SIGQUIT,
+                               SIGXCPU, SIGALRM, SIGUSR1, SIGUSR2};
   main_thread = pthread_self();
   for (size_t i = 0; i < sizeof ending / sizeof *ending; i++) {
     struct sigaction old;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 using namespace OIIO;
@@ -40,6 +41,9 @@ template <typename Body> image_status guarded(image_message *message, Body body)
     return body();
   } catch (const std::bad_alloc &) {
     snprintf(message->text, sizeof message->text, "not enough memory");
+    return IMAGE_NO_MEMORY;
+  } catch (const std::system_error &error) { // a thread that could not be started
+    snprintf(message->text, sizeof message->text, "the system gives it no more: %s", error.what());
     return IMAGE_NO_MEMORY;
   } catch (const std::exception &error) {
     snprintf(message->text, sizeof message->text, "%s", error.what());

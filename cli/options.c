@@ -143,7 +143,7 @@ static void add_files(GOptionGroup *group, options_of command, options *given) {
 static void add_common(GOptionGroup *group, options *given) {
   GOptionEntry entries[] = {
       ENTRY("threads", 0, STRING, threads_text, "0: all processors (default 0)", "N"),
-      ENTRY("memory", 0, STRING, memory_text, "Limit (default: three quarters of the machine's)",
+      ENTRY("memory", 0, STRING, memory_text, "Limit (default: three quarters of what there is)",
             "MiB"),
       ENTRY("json", 0, FILENAME, json, "Write a report as JSON; -: to standard output", "FILE|-"),
       ENTRY("force", 0, NONE, force, "Replace files that exist", NULL),

@@ -59,6 +59,11 @@ static void folder_of(const char *path, char folder[PATH_MAX]) {
 bool safe_file_check(const char *path, bool overwrite, char *message, size_t size) {
   char target[PATH_MAX], folder[PATH_MAX];
   struct stat status;
+  /* Of /dev/stdout the link leads to no name, but there is something. */
+  if (stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
+    snprintf(message, size, "it is no ordinary file; write to a file");
+    return false;
+  }
   if (!resolve(path, target)) {
     if (errno != ENOENT) return refuse(message, size, errno, "");
     snprintf(message, size, "it is a link to a file that is not there; remove it first");
@@ -66,10 +71,6 @@ bool safe_file_check(const char *path, bool overwrite, char *message, size_t siz
   }
   if (stat(target, &status) == 0) {
     if (S_ISDIR(status.st_mode)) return refuse(message, size, EISDIR, "");
-    if (!S_ISREG(status.st_mode)) {
-      snprintf(message, size, "it is no ordinary file");
-      return false;
-    }
     if (!overwrite) return refuse(message, size, EEXIST, "");
   } else if (errno != ENOENT) {
     return refuse(message, size, errno, "");
@@ -145,12 +146,30 @@ static bool write_all(int fd, const char *bytes, size_t size) {
   return true;
 }
 
+/* Where neither renameat2's flag nor link() is had (some FUSE mounts): an empty file takes the name
+ * first, which fails where there is one. Between the two steps signals wait. */
+static bool take_name_by_two_steps(const char *target) {
+  sigset_t old = block_signals();
+  int fd = open(target, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC | O_NOFOLLOW, 0600);
+  bool good = fd >= 0 && rename(temporary, target) == 0;
+  int error = errno;
+  if (fd >= 0) {
+    if (!good) unlink(target);
+    close(fd);
+  }
+  restore_signals(old);
+  errno = error;
+  return good;
+}
+
 /* link() never replaces, on every file system that has it; others get renameat2's flag. */
 static bool take_name(const char *target, bool overwrite) {
   if (overwrite) return rename(temporary, target) == 0;
   if (renameat2(AT_FDCWD, temporary, AT_FDCWD, target, RENAME_NOREPLACE) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;
-  return link(temporary, target) == 0 && unlink(temporary) == 0;
+  if (link(temporary, target) == 0) return unlink(temporary) == 0;
+  if (errno != EPERM && errno != ENOSYS && errno != EOPNOTSUPP) return false;
+  return take_name_by_two_steps(target);
 }
 
 /* A file system that cannot sync folders (EINVAL) has nothing to sync: the name is there. */

@@ -227,11 +227,15 @@ static recede_status refuse(char *message, size_t size, const recede_param_info 
   return RECEDE_ARGUMENT;
 }
 
+/* Also strtod's blanks, hexadecimals and names are no numbers here. */
+static const char number_signs[] = "+-.0123456789eE";
+
 static int parse_numbers(const recede_param_info *row, const char *value, double *numbers) {
   for (int i = 0; i < row->count; i++) {
     char *end;
     numbers[i] = strtod(value, &end);
-    if (end == value || !(numbers[i] >= row->minimum && numbers[i] <= row->maximum)) return 0;
+    if (end == value || end > value + strspn(value, number_signs)) return 0;
+    if (!(numbers[i] >= row->minimum && numbers[i] <= row->maximum)) return 0;
     if (row->type == RECEDE_PARAM_INT && numbers[i] != floor(numbers[i])) return 0;
     if (*end != (i + 1 < row->count ? ',' : '\0')) return 0;
     value = end + 1;

@@ -234,7 +234,7 @@ RECEDE_API int recede_params_get(const recede_params *params, const char *key, c
 typedef struct recede_host {
   size_t struct_size;
   int threads;           /* 0 = all; clamped to 1..64 */
-  uint64_t memory_bytes; /* limit of the core's memory; 0 = three quarters of the machine's */
+  uint64_t memory_bytes; /* limit of the core's memory; 0 = three quarters of what there is */
   /* Called from the thread that called run, several times a second. stage is a fixed English name,
    * fraction runs 0..1 over the whole run. Nonzero cancels. */
   int (*progress)(void *user, const char *stage, double fraction);

@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
+#include "base/machine.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -19,13 +19,8 @@ double rc_seconds(void) {
 }
 
 static int resolved_threads(int asked) {
-  if (asked <= 0) asked = (int)sysconf(_SC_NPROCESSORS_ONLN);
+  if (asked <= 0) asked = rc_machine_processors();
   return asked < 1 ? 1 : asked > 64 ? 64 : asked;
-}
-
-static uint64_t three_quarters_of_memory(void) {
-  long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
-  return pages > 0 && size > 0 ? (uint64_t)pages / 4 * 3 * (uint64_t)size : (uint64_t)2 << 30;
 }
 
 void rc_context_init(rc_context *context, const recede_host *host) {
@@ -36,7 +31,7 @@ void rc_context_init(rc_context *context, const recede_host *host) {
            host->struct_size < sizeof *host ? host->struct_size : sizeof *host);
   context->threads = resolved_threads(context->host.threads);
   context->limit_bytes =
-      context->host.memory_bytes ? context->host.memory_bytes : three_quarters_of_memory();
+      context->host.memory_bytes ? context->host.memory_bytes : rc_machine_memory_bytes() / 4 * 3;
 }
 
 void rc_context_clear(rc_context *context) {

@@ -2,6 +2,8 @@
 import json
 import os
 import pty
+import re
+import resource
 import subprocess
 import sys
 
@@ -39,7 +41,8 @@ def test_usage_errors_are_2(folder):
     wrong = [
         ["--no-such"], ["--slant", "180"], ["--slant", "-1"], ["--slant", "nan"],
         ["--slant", "inf"],
-        ["--slant", "4x"], ["--slant", ""], ["--slant", "4,5"], ["--slant", "30", "--tilt", "181"],
+        ["--slant", "4x"], ["--slant", ""], ["--slant=0x10"], ["--slant", " 5"], ["--seed", "0x1"],
+        ["--slant", "4,5"], ["--slant", "30", "--tilt", "181"],
         ["--tilt", "20"], ["--fov", "0.5"], ["--fov", "171"], ["--horizon", "1,2,3"],
         ["--horizon", "1,2,1,2"], ["--horizon", "1,2,3,4,5"], ["--quad", "1,2,3,4,5,6,7,8,9"],
         ["--quad", "0,0,1,1,2,2,3,3"], ["--seed", "-1"], ["--seed", "1.5"], ["--threads", "-1"],
@@ -223,6 +226,21 @@ def test_threads_give_the_same_bytes(folder):
         check(1 <= report["threads"] <= 64, report["threads"])
         made[threads] = out.read_bytes()
     check(len(set(made.values())) == 1, "threads change the bytes")
+
+
+def test_processors_and_memory_are_those_of_the_process(folder):
+    """In a container, and under limits, there is less than the machine has."""
+    image, _ = pair(folder)
+    one = {min(os.sched_getaffinity(0))}
+    report = report_of("orient", image, "--frontal", prepare=lambda: os.sched_setaffinity(0, one))
+    check(report["threads"] == 1, report["threads"])
+    if harness.SANITIZED:  # ASan's shadow does not fit in any limit of addresses
+        return
+    most = 2 << 30
+    done = recede("synthesize", image, "--size", "8000x8000", "--frontal", "-o", folder / "out.png",
+                  code=5, prepare=lambda: resource.setrlimit(resource.RLIMIT_AS, (most, most)))
+    limit = re.search(rb"needs up to \d+ MiB, the limit is (\d+) MiB", done.stderr)
+    check(limit and int(limit[1]) < 1536, done.stderr)
 
 
 def test_locales_give_the_same_bytes(folder):
