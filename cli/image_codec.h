@@ -49,6 +49,8 @@ typedef struct image_decoder image_decoder;
 /* Once, before anything else here. threads: 0 is all processors. Keeps the library from printing.
  */
 void image_codec_init(int threads);
+/* The library could not start a thread: what it does at a process's exit would crash. */
+bool image_codec_broken(void);
 
 /* format: OpenImageIO's name of it. bytes must live as long as the decoder. Reads no pixel. */
 image_status image_decoder_new(const char *format, const void *bytes, size_t size,

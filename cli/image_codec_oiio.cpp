@@ -35,6 +35,8 @@ image_status fail(image_message *message, image_status status, const std::string
   return status;
 }
 
+bool threads_missing;
+
 // Runs a body that may throw; every exception becomes a status.
 template <typename Body> image_status guarded(image_message *message, Body body) noexcept {
   try {
@@ -42,8 +44,9 @@ template <typename Body> image_status guarded(image_message *message, Body body)
   } catch (const std::bad_alloc &) {
     snprintf(message->text, sizeof message->text, "not enough memory");
     return IMAGE_NO_MEMORY;
-  } catch (const std::system_error &error) { // a thread that could not be started
-    snprintf(message->text, sizeof message->text, "the system gives it no more: %s", error.what());
+  } catch (const std::system_error &error) {
+    threads_missing = true;
+    snprintf(message->text, sizeof message->text, "a thread cannot be started: %s", error.what());
     return IMAGE_NO_MEMORY;
   } catch (const std::exception &error) {
     snprintf(message->text, sizeof message->text, "%s", error.what());
@@ -256,6 +259,8 @@ extern "C" void image_codec_init(int threads) {
     return IMAGE_OK;
   });
 }
+
+extern "C" bool image_codec_broken(void) { return threads_missing; }
 
 extern "C" image_status image_decoder_new(const char *format, const void *bytes, size_t size,
                                           image_decoder **decoder, image_info *info,

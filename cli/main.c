@@ -2,6 +2,7 @@
 #include <locale.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "command.h"
 
@@ -38,7 +39,9 @@ static int run(size_t index, int argc, char **argv) {
     code = commands[index].run(&given);
   }
   options_clear(&given);
-  return (int)code;
+  if (!image_codec_broken()) return (int)code;
+  fflush(NULL);
+  _exit((int)code);
 }
 
 int main(int argc, char **argv) {

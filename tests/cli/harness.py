@@ -110,6 +110,18 @@ class Many:
         return checked(subprocess.CompletedProcess(arguments, code, out, error), leaks)
 
 
+def preloaded(folder, source):
+    """The environment in which functions of the C library are those of this C source."""
+    if SANITIZED:
+        raise Skip("a sanitizer wants to be the first library")
+    (folder / "preloaded.c").write_text(source)
+    library = folder / "preloaded.so"
+    if subprocess.run(["cc", "-shared", "-fPIC", "-o", library, folder / "preloaded.c"],
+                      check=False).returncode != 0:
+        raise Skip("no compiler here")
+    return {"LD_PRELOAD": str(library)}
+
+
 def report_of(*arguments, **options):
     """The JSON that the command prints for these arguments."""
     return json.loads(recede(*arguments, "--json", "-", **options).stdout)

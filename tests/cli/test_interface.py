@@ -2,8 +2,6 @@
 import json
 import os
 import pty
-import re
-import resource
 import subprocess
 import sys
 
@@ -89,39 +87,6 @@ def test_input_errors_are_3(folder):
     check(b"other.png" in recede("fill", image, "--mask", folder / "other.png", *options,
                                  code=3).stderr)
     check(not out.exists())
-
-
-def test_limits_are_5(folder):
-    image = write(folder / "in.png", texture(400, 600))
-    mask = write(folder / "mask.png", hole(400, 600, (50, 350, 50, 550)))
-    done = recede("fill", image, "--mask", mask, "-o", folder / "out.png", "--frontal", "--memory",
-                  "1", code=5)
-    check(b"MiB" in done.stderr, done.stderr)
-    recede("synthesize", image, "--size", "30000x30000", "--frontal", "-o", folder / "out.png",
-           "--memory", "100", code=5)
-    recede("scale-map", "--size", "60000x60000", "--frontal", "-o", folder / "out.exr", code=5)
-    check(not (folder / "out.png").exists())
-
-
-def test_sides_that_a_format_cannot_have(folder):
-    """Said before the work, with 4, the limit and the size."""
-    image = write(folder / "in.png", texture())
-    for suffix, limit, side in (("jpg", 65500, 65501), ("tga", 65535, 65536),
-                                ("png", 1000000, 1000001)):
-        for size in (f"{side}x2", f"2x{side}"):
-            out = folder / f"out.{suffix}"
-            # Too little memory for the work: it is not reached.
-            for command in (["synthesize", image, "--memory", "1"], ["scale-map"]):
-                done = recede(*command, "--size", size, "--frontal", "-o", out, code=4)
-                check(str(limit).encode() in done.stderr and str(side).encode() in done.stderr,
-                      done.stderr)
-                check(not out.exists() and done.stderr.startswith(b"recede: "))
-    recede("scale-map", "--size", "65500x1", "--frontal", "-o", folder / "out.jpg")
-    long = folder / "long.ppm"
-    long.write_bytes(b"P5\n66000 2\n255\n" + bytes(range(250)) * 528)
-    mask = folder / "mask.pgm"
-    mask.write_bytes(b"P5\n66000 2\n255\n" + bytes(30000) + b"\xff" * 9 + bytes(101991))
-    recede("fill", long, "--mask", mask, "--frontal", "-o", folder / "out2.jpg", code=4)
 
 
 def test_every_option_is_taken(folder):
@@ -214,33 +179,6 @@ def test_seed_holds_the_hash(folder):
 
     check(hash_of(1, 1) == hash_of(1, 2), "the same seed gave two results")
     check(hash_of(1, 3)[0] != hash_of(2, 1)[0], "another seed gave the same result")
-
-
-def test_threads_give_the_same_bytes(folder):
-    image, mask = pair(folder)
-    made = {}
-    for threads in (0, 1, 3, 64, 10000):
-        out = folder / f"{threads}.png"
-        report = report_of("fill", image, "--mask", mask, "-o", out, "--slant", "40", "--threads",
-                           threads, environment={"OMP_NUM_THREADS": "garbage"})
-        check(1 <= report["threads"] <= 64, report["threads"])
-        made[threads] = out.read_bytes()
-    check(len(set(made.values())) == 1, "threads change the bytes")
-
-
-def test_processors_and_memory_are_those_of_the_process(folder):
-    """In a container, and under limits, there is less than the machine has."""
-    image, _ = pair(folder)
-    one = {min(os.sched_getaffinity(0))}
-    report = report_of("orient", image, "--frontal", prepare=lambda: os.sched_setaffinity(0, one))
-    check(report["threads"] == 1, report["threads"])
-    if harness.SANITIZED:  # ASan's shadow does not fit in any limit of addresses
-        return
-    most = 2 << 30
-    done = recede("synthesize", image, "--size", "8000x8000", "--frontal", "-o", folder / "out.png",
-                  code=5, prepare=lambda: resource.setrlimit(resource.RLIMIT_AS, (most, most)))
-    limit = re.search(rb"needs up to \d+ MiB, the limit is (\d+) MiB", done.stderr)
-    check(limit and int(limit[1]) < 1536, done.stderr)
 
 
 def test_locales_give_the_same_bytes(folder):

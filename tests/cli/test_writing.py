@@ -131,13 +131,7 @@ int link(const char *a, const char *b) { errno = EPERM; return -1; }
 
 def test_file_systems_without_links(folder):
     """Some FUSE mounts can neither link nor rename without replacing."""
-    if harness.SANITIZED:
-        raise harness.Skip("a sanitizer wants to be the first library")
-    (folder / "poor.c").write_text(POOR)
-    if subprocess.run(["cc", "-shared", "-fPIC", "-o", folder / "poor.so", folder / "poor.c"],
-                      check=False).returncode != 0:
-        raise harness.Skip("no compiler here")
-    poor = {"LD_PRELOAD": str(folder / "poor.so")}
+    poor = harness.preloaded(folder, POOR)
     arguments = job(folder)
     out = folder / "out.png"
     recede(*arguments, "-o", out, environment=poor)
