@@ -232,8 +232,8 @@ def test_a_true_bomb_takes_no_memory(folder):
 
 
 def test_progressive_bombs(folder):
-    """Decoders begin to decode these when they are opened, and keep all coefficients: the size, with
-    these, and the passes over the picture are looked at before."""
+    """Decoders begin to decode these when they are opened, and keep all coefficients: the size with
+    these, and the passes over the picture, are looked at before."""
     data = originals(folder)["progressive.jpg"]
     frame, scan = data.index(b"\xff\xc2"), data.rindex(b"\xff\xda")
     huge = folder / "huge.jpg"
