@@ -2,6 +2,7 @@
 import os
 import re
 import resource
+import subprocess
 import sys
 
 import harness
@@ -70,6 +71,29 @@ def test_processors_and_memory_are_those_of_the_process(folder):
                   code=5, prepare=lambda: resource.setrlimit(resource.RLIMIT_AS, (most, most)))
     limit = re.search(rb"needs up to \d+ MiB, the limit is (\d+) MiB", done.stderr)
     check(limit and int(limit[1]) < 1536, done.stderr)
+
+
+def test_a_container_has_less_memory(folder):
+    """Files as control groups have them, of both versions, in the place of the true ones."""
+    image, _ = pair(folder)
+    groups = [line.strip().split(":", 2) for line in open("/proc/self/cgroup", encoding="ascii")]
+    tried = 0
+    for name, kind, root in (("memory.max", "", ""), ("memory.limit_in_bytes", "memory", "/memory")):
+        group = [path for _, kinds, path in groups if kind == kinds]
+        for place in {"", *(path.rstrip("/") for path in group)} if group else ():
+            made = f"/sys/fs/cgroup{root}{place}"  # a container sees its own group as the root
+            script = (f"mount -t tmpfs recede /sys/fs/cgroup && mkdir -p '{made}' && "
+                      f"echo 400000000 > '{made}/{name}' && exec \"$@\"")
+            done = subprocess.run(
+                ["unshare", "-m", "sh", "-c", script, "sh", harness.RECEDE, "synthesize", image,
+                 "--size", "8000x8000", "--frontal", "-o", folder / "out.png"],
+                check=False, timeout=60, capture_output=True)
+            if b"recede: " not in done.stderr:
+                raise harness.Skip("mounting a file system is not allowed here")
+            check(done.returncode == 5 and b"the limit is 286 MiB" in done.stderr, made, done)
+            tried += 1
+    if not tried:
+        raise harness.Skip("no control group has memory here")
 
 
 NO_THREADS = """
