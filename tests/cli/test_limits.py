@@ -78,7 +78,8 @@ def test_a_container_has_less_memory(folder):
     image, _ = pair(folder)
     groups = [line.strip().split(":", 2) for line in open("/proc/self/cgroup", encoding="ascii")]
     tried = 0
-    for name, kind, root in (("memory.max", "", ""), ("memory.limit_in_bytes", "memory", "/memory")):
+    for name, kind, root in (("memory.max", "", ""),
+                             ("memory.limit_in_bytes", "memory", "/memory")):
         group = [path for _, kinds, path in groups if kind == kinds]
         for place in {"", *(path.rstrip("/") for path in group)} if group else ():
             made = f"/sys/fs/cgroup{root}{place}"  # a container sees its own group as the root
