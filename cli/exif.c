@@ -8,6 +8,8 @@ enum { THUMBNAIL_OFFSET = 0x201, THUMBNAIL_LENGTH = 0x202, STRIP_OFFSETS = 273, 
 
 static const uint8_t type_sizes[] = {0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4, 0, 0, 8, 8, 8};
 enum { TYPE_WORD = 16 }; /* and above: BigTIFF's numbers of 64 bits */
+/* Of a tree: many times what cameras write, and two trees' fit the 16 bits of a folder's count. */
+enum { MOST_ENTRIES = 16384 };
 
 static size_t type_size(unsigned type) { return type < sizeof type_sizes ? type_sizes[type] : 0; }
 
@@ -83,8 +85,28 @@ static bool is_pointer(uint16_t tag, exif_folder *folder) {
   return tag == POINTER_EXIF || tag == POINTER_GPS || tag == POINTER_INTEROP;
 }
 
-/* The depth is bounded by the kinds of folder, so pointers in a circle end. */
-static void read_folder(const source *from, exif_folder folder, size_t offset, exif_tree *tree) {
+/* What is done for one tree. */
+typedef struct reading {
+  const source *from;
+  exif_tree *tree;
+  bool followed[EXIF_FOLDERS]; /* each kind of folder once, so pointers in a circle end */
+  size_t values;               /* bytes of those that do not fit into their entries */
+} reading;
+
+/* Values that do not overlap take no more than the bytes they are in. Were all of them the same
+ * ones, a copy of each would fill the memory. */
+static void take_entry(reading *now, const exif_entry *entry) {
+  size_t apart = entry->size > word_size(now->from) ? entry->size : 0;
+  if (now->tree->entries->len >= MOST_ENTRIES || apart > now->from->size - now->values) {
+    now->tree->cut = true;
+    return;
+  }
+  now->values += apart;
+  g_array_append_val(now->tree->entries, *entry);
+}
+
+static void read_folder(reading *now, exif_folder folder, size_t offset) {
+  const source *from = now->from;
   size_t count = folder_size(from, offset);
   for (size_t i = 0; i < count; i++) {
     exif_entry entry = {.folder = folder};
@@ -92,21 +114,21 @@ static void read_folder(const source *from, exif_folder folder, size_t offset, e
     if (!read_entry(from, entry_at(from, offset, i), &entry)) continue;
     bool word = entry.type >= TYPE_WORD;
     if (!is_pointer(entry.tag, &below)) {
-      if (!word) g_array_append_val(tree->entries, entry); /* a classic TIFF has no such numbers */
-    } else if (below > folder && (entry.size == 4 || entry.size == 8)) {
-      size_t to = word ? get_word(from, entry.value) : get32(from->big, entry.value);
-      read_folder(from, below, to, tree);
+      if (!word) take_entry(now, &entry); /* a classic TIFF has no such numbers */
+    } else if (below > folder && !now->followed[below] && (entry.size == 4 || entry.size == 8)) {
+      now->followed[below] = true;
+      read_folder(now, below, word ? get_word(from, entry.value) : get32(from->big, entry.value));
     }
   }
 }
 
 bool exif_read(const uint8_t *bytes, size_t size, exif_tree *tree) {
   source from;
-  tree->entries = g_array_new(FALSE, FALSE, sizeof(exif_entry));
-  tree->big_endian = false;
+  *tree = (exif_tree){.entries = g_array_new(FALSE, FALSE, sizeof(exif_entry))};
   if (!open_source(bytes, size, &from)) return false;
   tree->big_endian = from.big;
-  read_folder(&from, EXIF_MAIN, first_folder(&from), tree);
+  reading now = {.from = &from, .tree = tree};
+  read_folder(&now, EXIF_MAIN, first_folder(&from));
   return true;
 }
 
@@ -175,14 +197,14 @@ static gint by_tag(gconstpointer a, gconstpointer b) {
   return (int)((const merged *)a)->tag - (int)((const merged *)b)->tag;
 }
 
-static void take(const exif_tree *tree, exif_folder folder, GArray *all) {
+/* taken: by tag. */
+static void take(const exif_tree *tree, exif_folder folder, bool *taken, GArray *all) {
   for (guint i = 0; i < tree->entries->len; i++) {
     const exif_entry *entry = &g_array_index(tree->entries, exif_entry, i);
-    bool there = entry->folder != folder;
-    for (guint k = 0; k < all->len && !there; k++)
-      there = g_array_index(all, merged, k).tag == entry->tag;
     merged one = {entry, tree->big_endian, entry->tag};
-    if (!there) g_array_append_val(all, one);
+    if (entry->folder != folder || taken[entry->tag]) continue;
+    taken[entry->tag] = true;
+    g_array_append_val(all, one);
   }
 }
 
@@ -202,8 +224,10 @@ static void add_pointer(GArray *all, uint16_t tag) {
 static uint32_t append_folder(const exif_tree *first, const exif_tree *second, exif_folder folder,
                               GByteArray *to, guint start) {
   GArray *all = g_array_new(FALSE, FALSE, sizeof(merged));
-  take(first, folder, all);
-  if (second) take(second, folder, all);
+  bool *taken = g_new0(bool, G_MAXUINT16 + 1);
+  take(first, folder, taken, all);
+  if (second) take(second, folder, taken, all);
+  g_free(taken);
   if (folder == EXIF_MAIN && has(first, second, EXIF_EXIF)) add_pointer(all, POINTER_EXIF);
   if (folder == EXIF_MAIN && has(first, second, EXIF_GPS)) add_pointer(all, POINTER_GPS);
   if (folder == EXIF_EXIF && has(first, second, EXIF_INTEROP)) add_pointer(all, POINTER_INTEROP);

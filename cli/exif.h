@@ -19,6 +19,7 @@ typedef struct exif_entry {
 
 typedef struct exif_tree {
   bool big_endian;
+  bool cut;        /* there were more entries, or longer ones, than any sound file has */
   GArray *entries; /* exif_entry */
 } exif_tree;
 
@@ -35,7 +36,8 @@ enum {
 };
 
 /* false: it is no TIFF structure; the tree is empty. Entries that lie outside the bytes are
- * left out. The bytes must live as long as the tree. */
+ * left out; of pointers to a folder of one kind the first counts. The bytes must live as long as
+ * the tree. */
 bool exif_read(const uint8_t *bytes, size_t size, exif_tree *tree);
 void exif_clear(exif_tree *tree);
 

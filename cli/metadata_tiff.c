@@ -26,6 +26,7 @@ bool metadata_tiff_is_premultiplied(const uint8_t *bytes, size_t size) {
 void metadata_from_tiff(const uint8_t *bytes, size_t size, metadata_parts *parts) {
   exif_tree tree;
   if (exif_read(bytes, size, &tree)) {
+    parts->lost |= tree.cut;
     parts->xmp = value_of(&tree, EXIF_TAG_XMP);
     const exif_entry *photoshop = exif_find(&tree, EXIF_MAIN, EXIF_TAG_PHOTOSHOP);
     if (photoshop) parts->iptc = metadata_clean_iptc(photoshop->value, photoshop->size);
@@ -61,6 +62,7 @@ GByteArray *metadata_into_tiff(const uint8_t *bytes, size_t size, const metadata
   }
   bool has_exif = parts->exif && exif_read(parts->exif->data, parts->exif->len, &more);
   if (!has_exif) exif_read((const uint8_t *)"", 0, &more);
+  *lost |= more.cut;
   exif_remove_structure(&more);
   exif_remove(&made, EXIF_MAIN, 306); /* the encoder's date is today's */
   static const uint16_t better[] = {EXIF_TAG_ORIENTATION, EXIF_TAG_X_RESOLUTION,

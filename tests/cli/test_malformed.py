@@ -162,6 +162,43 @@ def test_damaged_metadata(folder):
                 harness.read(folder / f"out.{target}")
 
 
+def exif_of(entries):
+    """A block of one folder; an entry: tag, type, count, value."""
+    return (b"II*\0\x08\0\0\0" + struct.pack("<H", len(entries))
+            + b"".join(struct.pack("<HHII", *entry) for entry in entries) + bytes(4))
+
+
+def with_exif(path, pixels, block):
+    data = write(path, pixels).read_bytes()
+    if path.suffix == ".jpg":
+        path.write_bytes(data[:2] + b"\xff\xe1" + struct.pack(">H", len(block) + 8) + b"Exif\0\0"
+                         + block + data[2:])
+    else:
+        path.write_bytes(data[:33] + png_chunk(b"eXIf", block) + data[33:])
+    return path
+
+
+def test_exif_bombs(folder):
+    """A few KB, of which gigabytes could be made."""
+    pointers = [(tag, 4, 1, 8) for tag in (0x8769, 0x8825, 0xa005) for _ in range(150)]
+    circle = exif_of(pointers + [(0x9000 + i, 4, 1, 8) for i in range(150)])
+    # The same 50 KB are the value of each of 4000 entries; 65535 tags, all different, are there.
+    shared = exif_of([(0x9000 + i, 7, 50000, 8) for i in range(4000)]) + bytes(2000)
+    wide = exif_of([(i, 4, 1, 8) for i in range(65535) if i not in (274, 0x8769, 0x8825, 0xa005)])
+    with commands(folder) as many:
+        for suffix, block in (("jpg", circle), ("png", circle), ("jpg", shared), ("png", wide)):
+            path = with_exif(folder / f"in.{suffix}", texture(40, 56), block)
+            mask = with_exif(folder / "mask.png", np.eye(40, 56, dtype=np.uint8) * 255, block)
+            began = time.monotonic()
+            for target in ("tif", "png"):
+                out = folder / f"out.{target}"
+                done = many.run("fill", path, "--mask", mask, "--frontal", "--force", "-o", out)
+                check(done.returncode == 0, suffix, len(block), done)
+                check(out.stat().st_size < 10 << 20, suffix, len(block), target, "is too long")
+                check(target == "png" or block == circle or b"Exif" in done.stderr, done)
+            check(time.monotonic() - began < 20, suffix, len(block), "took too long")
+
+
 def test_no_pictures(folder):
     contents = {"text": b"This is no picture.\n" * 50, "zeros": bytes(5000), "one": b"\x89",
                 "html": b"<html><body>404</body></html>", "pdf": b"%PDF-1.4\n" + bytes(300),
