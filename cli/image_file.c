@@ -18,6 +18,8 @@
 /* Cameras and programs write some 10, tuned ones some 60; each takes the time of a pass over the
  * whole picture, and two thousand fit in 1.5 MB. */
 #define MOST_SCANS 200
+/* libpng unpacks each twice, up to 8 MB: 50 ms each time. Programs write a few. */
+#define MOST_PACKED_TEXTS 32
 
 static image_status fail(image_message *message, image_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -96,6 +98,15 @@ static image_status check_jpeg(const image_file *file, uint64_t limit, image_mes
       jpeg.scans, MOST_SCANS);
 }
 
+static image_status check_png(const image_file *file, image_message *message) {
+  unsigned texts = metadata_png_packed_texts(file->bytes.data, file->bytes.size);
+  if (texts <= MOST_PACKED_TEXTS) return IMAGE_OK;
+  return fail(message, IMAGE_MALFORMED,
+              "it holds %u compressed texts, more than any picture needs (%d are read); save it "
+              "without them",
+              texts, MOST_PACKED_TEXTS);
+}
+
 static image_status check_before_decoder(const image_file *file, uint64_t limit,
                                          image_message *message) {
   if (!file->format)
@@ -104,6 +115,7 @@ static image_status check_before_decoder(const image_file *file, uint64_t limit,
   if (image_format_bmp_rle(file->format, file->bytes.data, file->bytes.size))
     return fail(message, IMAGE_UNSUPPORTED,
                 "its pixels are compressed (RLE), which is not read in BMP; save it without");
+  if (strcmp(file->format->codec, "png") == 0) return check_png(file, message);
   return strcmp(file->format->codec, "jpeg") == 0 ? check_jpeg(file, limit, message) : IMAGE_OK;
 }
 

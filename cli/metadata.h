@@ -17,6 +17,9 @@ bool metadata_carries_orientation(const image_file *from, const image_format *fo
 image_status metadata_carry(const image_file *from, const image_format *format, bool keep,
                             image_bytes *bytes, image_message *message);
 
+/* How many texts of a PNG its decoder unpacks. */
+unsigned metadata_png_packed_texts(const uint8_t *bytes, size_t size);
+
 /* A TIFF whose colours are stored multiplied by alpha ("associated"); when it does not say, they
  * are taken to be plain. */
 bool metadata_tiff_is_premultiplied(const uint8_t *bytes, size_t size);

@@ -18,6 +18,7 @@ typedef struct metadata_parts {
   GByteArray *texts;   /* PNG: texts that describe the picture, likewise */
   GByteArray *comment; /* JPEG: comment segments as they are */
   double dpi_x, dpi_y; /* 0: unknown */
+  unsigned unpacked;   /* PNG: texts that were taken apart */
   bool lost;           /* there was more, which we cannot read */
 } metadata_parts;
 
@@ -41,7 +42,8 @@ GByteArray *metadata_into_tiff(const uint8_t *bytes, size_t size, const metadata
 
 /* 8BIM resources without the thumbnails (1033, 1036), which would show what was removed. */
 GByteArray *metadata_clean_iptc(const uint8_t *bytes, size_t size);
-/* Takes pictures out of an XMP packet. false: they cannot be told from the rest. */
+/* Takes pictures out of an XMP packet. false: they cannot be told from the rest, or it is longer
+ * than METADATA_LONGEST_TEXT. */
 bool metadata_clean_xmp(GByteArray *xmp);
 GByteArray *metadata_copy(const uint8_t *bytes, size_t size);
 

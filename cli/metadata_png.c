@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "metadata.h"
 #include "metadata_parts.h"
 
 #define SIGNATURE 8
@@ -26,6 +27,17 @@ static bool next_chunk(const uint8_t *bytes, size_t size, size_t *at, chunk *fou
 
 static bool is_one_of(const chunk *found, const char *names) {
   return strstr(names, found->name) != NULL;
+}
+
+unsigned metadata_png_packed_texts(const uint8_t *bytes, size_t size) {
+  chunk found;
+  unsigned packed = 0;
+  for (size_t at = SIGNATURE; next_chunk(bytes, size, &at, &found);) {
+    const uint8_t *end = memchr(found.data, 0, found.size);
+    bool flagged = end && (size_t)(end + 1 - found.data) < found.size && end[1] != 0;
+    packed += strcmp(found.name, "zTXt") == 0 || (strcmp(found.name, "iTXt") == 0 && flagged);
+  }
+  return packed;
 }
 
 void metadata_from_png(const uint8_t *bytes, size_t size, metadata_parts *parts) {

@@ -39,28 +39,40 @@ static size_t end_of_attribute(const GByteArray *xmp, size_t from) {
   return end ? (size_t)(end + 1 - (const char *)xmp->data) : 0;
 }
 
+/* What stays is copied once, piece by piece: taking each find out would move the rest for each. */
 static bool clean_of(GByteArray *xmp, const char *holder) {
-  const char *found;
-  for (size_t from = 0; (found = find(xmp, from, holder));) {
-    const char *start = (const char *)xmp->data;
-    size_t begin = (size_t)(found - start), end = begin + strlen(holder), cut_to;
-    while (begin > 0 && is_name(start[begin - 1])) begin--;
+  GByteArray *kept = g_byte_array_new();
+  const char *start = (const char *)xmp->data, *found;
+  size_t copied = 0, name_from = 0; /* where the name begins that reaches to the last find's end */
+  bool clear = true;
+  for (size_t from = 0; clear && (found = find(xmp, from, holder));) {
+    size_t begin = (size_t)(found - start), end = begin + strlen(holder);
+    while (begin > from && is_name(start[begin - 1])) begin--;
+    if (begin == from) begin = name_from;
+    name_from = begin;
     bool longer = end < xmp->len && is_name(start[end]); /* another name */
     char before = begin > 0 ? start[begin - 1] : '\0';
     from = end;
     if (longer || (before != '<' && !g_ascii_isspace(before))) continue;
     char *name = g_strndup(start + begin, end - begin);
-    cut_to = before == '<' ? end_of_element(xmp, end, name) : end_of_attribute(xmp, end);
+    from = before == '<' ? end_of_element(xmp, end, name) : end_of_attribute(xmp, end);
     g_free(name);
-    if (!cut_to) return false;
+    clear = from > 0;
     if (before == '<') begin--;
-    g_byte_array_remove_range(xmp, (guint)begin, (guint)(cut_to - begin));
-    from = begin;
+    g_byte_array_append(kept, xmp->data + copied, (guint)(begin - copied));
+    copied = name_from = from;
   }
-  return true;
+  if (copied > 0) {
+    g_byte_array_append(kept, xmp->data + copied, (guint)(xmp->len - copied));
+    g_byte_array_set_size(xmp, 0);
+    g_byte_array_append(xmp, kept->data, kept->len);
+  }
+  g_byte_array_unref(kept);
+  return clear;
 }
 
 bool metadata_clean_xmp(GByteArray *xmp) {
+  if (xmp->len > METADATA_LONGEST_TEXT) return false;
   for (size_t i = 0; i < G_N_ELEMENTS(holders); i++)
     if (!clean_of(xmp, holders[i])) return false;
   return true;

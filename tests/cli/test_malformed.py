@@ -199,6 +199,33 @@ def test_exif_bombs(folder):
             check(time.monotonic() - began < 20, suffix, len(block), "took too long")
 
 
+def test_texts_beyond_measure(folder):
+    """XMP of thumbnails, or of a name without an end, and many texts that are to be unpacked."""
+    key = b"XML:com.adobe.xmp\0"
+    most = 4 << 20
+    thumbnails = b"<x>" + b"<a:Thumbnails/>" * (most // 15 - 9) + b"kept</x>"
+    name = b"<x>" + b":Thumbnails" * (most // 11 - 9) + b"</x>"
+    raw = b"Raw profile type exif\0\0" + zlib.compress(b"\nexif\n 2000000\n" + b"0" * 4000000, 9)
+    texts = {"thumbnails": [(b"iTXt", key + b"\0\0\0\0" + thumbnails)],
+             "name": [(b"iTXt", key + b"\0\0\0\0" + name)],
+             "long": [(b"iTXt", key + b"\0\0\0\0" + thumbnails * 2)],
+             "packed": [(b"iTXt", key + b"\1\0\0\0" + zlib.compress(name, 9))],
+             "many": [(b"zTXt", raw)] * 30, "most": [(b"zTXt", raw)] * 500}
+    plain = write(folder / "plain.png", texture(40, 56)).read_bytes()
+    mask = write(folder / "mask.png", np.eye(40, 56, dtype=np.uint8) * 255)
+    path, out = folder / "in.png", folder / "out.png"
+    with commands(folder) as many:
+        for what, chunks in texts.items():
+            path.write_bytes(plain[:33] + b"".join(png_chunk(*one) for one in chunks) + plain[33:])
+            done = many.run("fill", path, "--mask", mask, "--frontal", "--force", "-o", out)
+            check(done.returncode == (3 if what == "most" else 0), what, done)
+            if what == "most":
+                check(b"500 compressed texts" in done.stderr, done)
+                continue
+            check((b"XMP" in done.stderr) == (what in ("long", "many")), what, done.stderr)
+            check((b"<x>kept</x>" in out.read_bytes()) == (what == "thumbnails"), what)
+
+
 def test_no_pictures(folder):
     contents = {"text": b"This is no picture.\n" * 50, "zeros": bytes(5000), "one": b"\x89",
                 "html": b"<html><body>404</body></html>", "pdf": b"%PDF-1.4\n" + bytes(300),
