@@ -4,7 +4,7 @@
 
 enum { POINTER_EXIF = 0x8769, POINTER_GPS = 0x8825, POINTER_INTEROP = 0xa005 };
 enum { TIFF = 42, BIG_TIFF = 43 };
-enum { THUMBNAIL_OFFSET = 0x201, THUMBNAIL_LENGTH = 0x202, STRIP_OFFSETS = 273, STRIP_BYTES = 279 };
+enum { SUB_FOLDERS = 330 };
 
 static const uint8_t type_sizes[] = {0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4, 0, 0, 8, 8, 8};
 enum { TYPE_WORD = 16 }; /* and above: BigTIFF's numbers of 64 bits */
@@ -267,33 +267,97 @@ uint32_t exif_append(const exif_tree *first, const exif_tree *second, GByteArray
   return offset;
 }
 
-/* ------------------------------------------------------------------------------- thumbnail -- */
+/* ------------------------------------------------------------------------------ thumbnails -- */
 
-static void blank_range(uint8_t *bytes, size_t size, size_t offset, size_t length) {
-  if (offset >= 8 && offset < size) memset(bytes + offset, 0, MIN(length, size - offset));
-}
+/* Of a chain: two are usual, three are known. */
+enum { MOST_FOLDERS = 16 };
 
-static size_t number_of(const source *from, const exif_entry *entry) {
-  return entry->type == 3 ? get16(from->big, entry->value) : get32(from->big, entry->value);
-}
-
-void exif_blank_thumbnail(uint8_t *bytes, size_t size) {
+typedef struct blanking {
   source from;
-  if (!open_source(bytes, size, &from)) return;
-  size_t main = first_folder(&from), count = folder_size(&from, main);
-  if (count == 0) return;
-  size_t next = (size_t)(entry_at(&from, main, count) - bytes);
-  if (word_size(&from) > size - next) return;
-  size_t second = get_word(&from, bytes + next), offset = 0, length = 0;
-  count = folder_size(&from, second);
-  for (size_t i = 0; i < count; i++) {
-    exif_entry entry;
-    if (!read_entry(&from, entry_at(&from, second, i), &entry) || entry.size > 4) continue;
-    if (entry.tag == THUMBNAIL_OFFSET || entry.tag == STRIP_OFFSETS)
-      offset = number_of(&from, &entry);
-    if (entry.tag == THUMBNAIL_LENGTH || entry.tag == STRIP_BYTES)
-      length = number_of(&from, &entry);
+  uint8_t *bytes;
+  size_t left; /* bytes that pictures may have: these do not overlap, so no more than there are */
+  size_t folders[MOST_FOLDERS];
+  unsigned count;
+} blanking;
+
+static size_t number_at(const source *from, const exif_entry *entry, size_t index) {
+  const uint8_t *at = entry->value + index * type_size(entry->type);
+  if (entry->type == 3) return get16(from->big, at);
+  return entry->type >= TYPE_WORD ? get_word(from, at) : get32(from->big, at);
+}
+
+static bool is_number(const exif_entry *entry) {
+  return entry->type == 3 || entry->type == 4 || entry->type == 13 || entry->type >= TYPE_WORD;
+}
+
+/* Then it is no picture's place. */
+static bool meets_folder(const blanking *now, size_t offset, size_t length) {
+  for (unsigned i = 0; i < now->count; i++) {
+    const uint8_t *end =
+        entry_at(&now->from, now->folders[i], folder_size(&now->from, now->folders[i]));
+    if (offset < (size_t)(end - now->from.bytes) && now->folders[i] < offset + length) return true;
   }
-  blank_range(bytes, size, offset, length);
-  memset(bytes + next, 0, word_size(&from));
+  return false;
+}
+
+static bool blank_pieces(blanking *now, const exif_entry *offsets, const exif_entry *lengths) {
+  if (!offsets->value || !lengths->value) return true;
+  for (size_t i = 0; i < MIN(offsets->count, lengths->count); i++) {
+    size_t offset = number_at(&now->from, offsets, i), length = number_at(&now->from, lengths, i);
+    if (length == 0 || offset < 8 || offset >= now->from.size) continue;
+    length = MIN(length, now->from.size - offset);
+    if (length > now->left || meets_folder(now, offset, length)) return false;
+    now->left -= length;
+    memset(now->bytes + offset, 0, length);
+  }
+  return true;
+}
+
+static bool add_folder(blanking *now, size_t offset) {
+  if (folder_size(&now->from, offset) == 0) return true;
+  for (unsigned i = 0; i < now->count; i++)
+    if (now->folders[i] == offset) return true;
+  if (now->count == MOST_FOLDERS) return false;
+  now->folders[now->count++] = offset;
+  return true;
+}
+
+/* Where the place of the next folder is; NULL: beyond the end. */
+static uint8_t *next_of(const blanking *now, size_t folder) {
+  size_t count = folder_size(&now->from, folder);
+  size_t next = (size_t)(entry_at(&now->from, folder, count) - now->from.bytes);
+  return word_size(&now->from) <= now->from.size - next ? now->bytes + next : NULL;
+}
+
+/* Lists a folder's own folders and the next one, then blanks its pictures: a whole one, strips,
+ * tiles. In the first folder these two are what programs leave of a TIFF, and lead nowhere. */
+static bool blank_folder(blanking *now, size_t folder) {
+  static const uint16_t pairs[][2] = {{0x201, 0x202}, {273, 279}, {324, 325}};
+  exif_entry found[G_N_ELEMENTS(pairs)][2] = {{{0}}}, entry;
+  size_t count = folder_size(&now->from, folder);
+  const uint8_t *next = next_of(now, folder);
+  bool good = !next || add_folder(now, get_word(&now->from, next));
+  for (size_t i = 0; i < count && good; i++) {
+    if (!read_entry(&now->from, entry_at(&now->from, folder, i), &entry) || !is_number(&entry))
+      continue;
+    if (entry.tag == SUB_FOLDERS) good = entry.count <= MOST_FOLDERS;
+    for (size_t k = 0; entry.tag == SUB_FOLDERS && k < entry.count && good; k++)
+      good = add_folder(now, number_at(&now->from, &entry, k));
+    for (size_t k = 0; k < 2 * G_N_ELEMENTS(pairs); k++)
+      if (entry.tag == pairs[k / 2][k % 2]) found[k / 2][k % 2] = entry;
+  }
+  size_t kinds = folder == now->folders[0] ? 1 : G_N_ELEMENTS(pairs);
+  for (size_t i = 0; i < kinds && good; i++) good = blank_pieces(now, &found[i][0], &found[i][1]);
+  return good;
+}
+
+bool exif_blank_thumbnails(uint8_t *bytes, size_t size) {
+  blanking now = {.bytes = bytes, .left = size};
+  if (!open_source(bytes, size, &now.from)) return true;
+  if (!add_folder(&now, first_folder(&now.from)) || now.count == 0) return now.count == 0;
+  for (unsigned i = 0; i < now.count; i++)
+    if (!blank_folder(&now, now.folders[i])) return false;
+  uint8_t *next = next_of(&now, now.folders[0]);
+  if (next) memset(next, 0, word_size(&now.from));
+  return true;
 }

@@ -50,7 +50,8 @@ void exif_remove(exif_tree *tree, exif_folder folder, uint16_t tag);
  * that starts at the array's byte `start`; returns the offset of its first folder from there. */
 uint32_t exif_append(const exif_tree *first, const exif_tree *second, GByteArray *to, guint start);
 
-/* Blanks the thumbnail, which would show what was removed: in the block itself. */
-void exif_blank_thumbnail(uint8_t *bytes, size_t size);
+/* Blanks thumbnails, which would show what was removed: in the block itself, so that makers' notes
+ * stay where they are. false: they cannot be told from the rest. */
+bool exif_blank_thumbnails(uint8_t *bytes, size_t size);
 
 #endif

@@ -74,6 +74,12 @@ static int turn_in_exif(const GByteArray *exif) {
   return turn <= 8 ? turn : 0;
 }
 
+static void drop(metadata_parts *parts, GByteArray **part) {
+  g_byte_array_unref(*part);
+  *part = NULL;
+  parts->lost = true;
+}
+
 image_status metadata_read(image_file *file, image_message *message) {
   const char *kind = file->format->codec;
   const uint8_t *bytes = file->bytes.data;
@@ -95,14 +101,11 @@ image_status metadata_read(image_file *file, image_message *message) {
     metadata_from_webp(bytes, size, parts);
   else
     return IMAGE_OK;
-  if (parts->exif) exif_blank_thumbnail(parts->exif->data, parts->exif->len);
-  if (parts->xmp && !metadata_clean_xmp(parts->xmp)) {
-    g_byte_array_unref(parts->xmp);
-    parts->xmp = NULL;
-    parts->lost = true;
-  }
   /* The decoder's word may be XMP's, by which no viewer turns. */
   int turn = turn_in_exif(parts->exif);
+  if (parts->exif && !exif_blank_thumbnails(parts->exif->data, parts->exif->len))
+    drop(parts, &parts->exif);
+  if (parts->xmp && !metadata_clean_xmp(parts->xmp)) drop(parts, &parts->xmp);
   file->info.turn_given = turn > 0;
   file->info.orientation = turn > 0 ? turn : 1;
   if (strcmp(kind, "tiff") == 0)

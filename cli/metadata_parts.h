@@ -10,7 +10,7 @@
 #define METADATA_LONGEST_TEXT ((size_t)4 << 20)
 
 typedef struct metadata_parts {
-  GByteArray *exif;    /* an Exif block (a TIFF structure), its thumbnail blanked */
+  GByteArray *exif;    /* an Exif block (a TIFF structure), its thumbnails blanked */
   GByteArray *xmp;     /* the packet */
   GByteArray *iptc;    /* Photoshop's 8BIM resources, without thumbnails */
   GByteArray *profile; /* WebP's, which the decoder does not give */
