@@ -183,10 +183,13 @@ image_status metadata_carry(const image_file *from, const image_format *format, 
     made = metadata_into_tiff(bytes->data, bytes->size, &parts, &lost);
   if (!made)
     lost |= describes(parts.exif) || parts.xmp || parts.iptc || (from && from->info.profile);
+  lost |= parts.comment && strcmp(format->codec, "jpeg") != 0;
+  lost |= parts.texts && parts.texts->len > 0 && strcmp(format->codec, "png") != 0;
   if (lost)
     g_snprintf(
         message->text, sizeof message->text,
-        "Not all that the input says beside its pixels (profile, Exif, XMP, IPTC) is kept in %s.",
+        "Not all that the input holds beside its pixels (profile, Exif, XMP, IPTC, comments, "
+        "further pictures) is kept in %s.",
         format->name);
   if (!made) return IMAGE_OK;
   image_bytes_free(bytes);

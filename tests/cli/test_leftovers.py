@@ -5,7 +5,7 @@ import sys
 import harness
 from harness import check, hole, recede, texture, write
 from test_malformed import with_exif
-from test_metadata import SMALL, fill, hides, metadata
+from test_metadata import SMALL, fill, hides, metadata, with_chunk
 
 
 def folder_of(at, entries, following=0):
@@ -82,6 +82,25 @@ def test_exif_of_too_many_folders_goes(folder):
     check(b"Exif" in done.stderr and b"Acme" not in (folder / "out.jpg").read_bytes(), done)
     before, after = (harness.read(path).astype(int) for path in (image, folder / "out.jpg"))
     check(abs(before[:12] - after[::-1, ::-1][:12]).mean() < 6, "is not stored as it is seen")
+
+
+def test_comments_without_a_place_are_said(folder):
+    mask = write(folder / "mask.png", hole())
+    plain = write(folder / "plain.jpg", texture()).read_bytes()
+    comment = folder / "comment.jpg"
+    comment.write_bytes(plain[:2] + b"\xff\xfe\0\x09by hand" + plain[2:])
+    text = with_chunk(write(folder / "text.png", texture()), b"tEXt", b"Comment\0by hand")
+    for image, home in ((comment, "jpg"), (text, "png"), (folder / "plain.jpg", "")):
+        for target in ("jpg", "png", "tif", "bmp", "tga"):
+            out = folder / f"out.{target}"
+            done = recede("fill", image, "--mask", mask, "--frontal", "--force", "-o",
+                          out)
+            kept = b"by hand" in out.read_bytes()
+            check(kept == (target == home), image.name, target, "kept:", kept)
+            check((b"comments" in done.stderr) == (home not in ("", target)), image.name, target,
+                  done.stderr)
+    done = recede("synthesize", text, "--size", "70x50", "--frontal", "-o", folder / "made.bmp")
+    check(not done.stderr, done)  # another picture, of which it said nothing
 
 
 if __name__ == "__main__":
