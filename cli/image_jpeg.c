@@ -56,6 +56,7 @@ image_jpeg image_jpeg_walk(const unsigned char *bytes, size_t size) {
       at++;
     } else if (marker == 0xd9) {
       jpeg.whole = true;
+      jpeg.end = at + 2;
     } else if (marker == 0x01 || (marker >= 0xd0 && marker <= 0xd7)) { /* without a length */
       at += 2;
     } else if (at + 4 > size) {

@@ -14,6 +14,7 @@ typedef struct image_jpeg {
   int scans;             /* passes over the picture */
   uint64_t coefficients; /* bytes that the decoder keeps until the last scan; 0: only one comes */
   bool whole;            /* its end was met */
+  size_t end;            /* and what follows it begins here */
 } image_jpeg;
 
 image_jpeg image_jpeg_walk(const unsigned char *bytes, size_t size);

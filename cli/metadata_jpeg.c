@@ -1,6 +1,7 @@
 /* Exif, XMP, IPTC and comments in a JPEG's segments. */
 #include <string.h>
 
+#include "image_jpeg.h"
 #include "metadata_parts.h"
 
 #define EXIF "Exif\0"                      /* and one more 0 */
@@ -8,6 +9,8 @@
 #define PHOTOSHOP "Photoshop 3.0"          /* and a 0 */
 enum { APP0 = 0xe0, APP1 = 0xe1, APP2 = 0xe2, APP13 = 0xed, COMMENT = 0xfe, SCAN = 0xda };
 #define LONGEST 65533 /* bytes of a segment: its length has 16 bits and counts itself */
+
+#define LEAST_FOLLOWER 64 /* bytes: in fewer there is no picture, but a stray end of line */
 
 typedef struct segment {
   unsigned marker;
@@ -35,6 +38,15 @@ static void append_to(GByteArray **to, const uint8_t *bytes, size_t size) {
   g_byte_array_append(*to, bytes, (guint)size);
 }
 
+/* Phones and cameras put a gain map, a preview or a video behind the picture. */
+static bool is_followed(const uint8_t *bytes, size_t size) {
+  image_jpeg jpeg = image_jpeg_walk(bytes, size);
+  size_t more = 0;
+  for (size_t i = jpeg.end; jpeg.whole && i < size && more < LEAST_FOLLOWER; i++)
+    more += bytes[i] != 0 && bytes[i] != 0xff; /* what files are filled up with */
+  return more >= LEAST_FOLLOWER;
+}
+
 void metadata_from_jpeg(const uint8_t *bytes, size_t size, metadata_parts *parts) {
   segment found;
   GByteArray *iptc = NULL;
@@ -51,6 +63,7 @@ void metadata_from_jpeg(const uint8_t *bytes, size_t size, metadata_parts *parts
     parts->iptc = metadata_clean_iptc(iptc->data, iptc->len);
     g_byte_array_unref(iptc);
   }
+  parts->lost |= is_followed(bytes, size);
 }
 
 static void put_segment(GByteArray *to, unsigned marker, const char *mark, size_t mark_size,

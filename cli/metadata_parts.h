@@ -42,8 +42,8 @@ GByteArray *metadata_into_tiff(const uint8_t *bytes, size_t size, const metadata
 
 /* 8BIM resources without the thumbnails (1033, 1036), which would show what was removed. */
 GByteArray *metadata_clean_iptc(const uint8_t *bytes, size_t size);
-/* Takes pictures out of an XMP packet. false: they cannot be told from the rest, or it is longer
- * than METADATA_LONGEST_TEXT. */
+/* Takes pictures, and words of pictures behind this one, out of an XMP packet. false: they cannot
+ * be told from the rest, or it is longer than METADATA_LONGEST_TEXT. */
 bool metadata_clean_xmp(GByteArray *xmp);
 GByteArray *metadata_copy(const uint8_t *bytes, size_t size);
 

@@ -1,4 +1,5 @@
-/* Pictures of the picture within XMP: they would show what was removed. */
+/* Pictures of the picture within XMP, which would show what was removed; and what it says of those
+ * that are not carried. */
 #include <string.h>
 
 #include "metadata_parts.h"
@@ -6,6 +7,10 @@
 /* Ends of the names of what holds them: Adobe's thumbnails, whatever their prefix, their bytes, and
  * the original that phones keep beside a blurred picture. */
 static const char *const holders[] = {":Thumbnails", "GImg:image", "GImage:Data"};
+/* And of those that promise a gain map or a video behind the picture, where we write none. */
+static const char *const promises[] = {"hdrgm:Version",       ":HDRGainMapVersion",
+                                       "Container:Directory", "Camera:MotionPhoto",
+                                       "Camera:MicroVideo",   "Camera:MicroVideoOffset"};
 
 static char *find(const GByteArray *in, size_t from, const char *what) {
   return from < in->len ? memmem(in->data + from, in->len - from, what, strlen(what)) : NULL;
@@ -75,5 +80,7 @@ bool metadata_clean_xmp(GByteArray *xmp) {
   if (xmp->len > METADATA_LONGEST_TEXT) return false;
   for (size_t i = 0; i < G_N_ELEMENTS(holders); i++)
     if (!clean_of(xmp, holders[i])) return false;
+  for (size_t i = 0; i < G_N_ELEMENTS(promises); i++)
+    if (!clean_of(xmp, promises[i])) return false;
   return true;
 }

@@ -103,5 +103,39 @@ def test_comments_without_a_place_are_said(folder):
     check(not done.stderr, done)  # another picture, of which it said nothing
 
 
+PROMISES = b"""<x:xmpmeta xmlns:x="adobe:ns:meta/">
+<rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#"><rdf:Description
+ xmlns:dc="http://purl.org/dc/elements/1.1/" xmlns:xmp="http://ns.adobe.com/xap/1.0/"
+ xmlns:hdrgm="http://ns.adobe.com/hdr-gain-map/1.0/"
+ xmlns:GCamera="http://ns.google.com/photos/1.0/"
+ xmlns:Container="http://ns.google.com/photos/1.0/container/"
+ xmlns:Item="http://ns.google.com/photos/1.0/container/item/"
+ hdrgm:Version="1.0" GCamera:MotionPhoto="1" GCamera:MicroVideo="1"
+ GCamera:MicroVideoOffset="999" xmp:CreatorTool="kept tool">
+<Container:Directory><rdf:Seq><rdf:li Item:Semantic="GainMap" Item:Length="999"/></rdf:Seq>
+</Container:Directory><dc:source>kept source</dc:source></rdf:Description></rdf:RDF></x:xmpmeta>"""
+
+
+def test_what_is_behind_a_jpeg_is_said(folder):
+    """A gain map or a video; and XMP promises it no longer."""
+    mask = write(folder / "mask.png", hole())
+    plain = write(folder / "plain.jpg", texture()).read_bytes()
+    packet = b"http://ns.adobe.com/xap/1.0/\0" + PROMISES
+    promising = (plain[:2] + b"\xff\xe1" + struct.pack(">H", len(packet) + 2) + packet + plain[2:])
+    image = folder / "in.jpg"
+    for what, behind, said in (("nothing", b"", False), ("fill", bytes(5000) + b"\xff" * 99, False),
+                               ("a line", b"\r\n", False), ("picture", plain, True),
+                               ("video", bytes(3) + b"\x18ftypmp42" + bytes(range(256)), True)):
+        image.write_bytes(promising + behind)
+        for target in ("jpg", "png", "tif"):
+            out = folder / f"out.{target}"
+            done = recede("fill", image, "--mask", mask, "--frontal", "--force", "-o", out)
+            check((b"further pictures" in done.stderr) == said, what, target, done.stderr)
+            data = out.read_bytes()
+            check(b"kept tool" in data and b"kept source" in data, what, target, "lacks XMP")
+            for word in (b"hdrgm:Version", b"Directory", b"GainMap\"", b"Motion", b"MicroVideo"):
+                check(word not in data, what, target, "promises", word)
+
+
 if __name__ == "__main__":
     sys.exit(harness.main(globals()))
