@@ -5,8 +5,8 @@
 #include "metadata_parts.h"
 
 /* Ends of the names of what holds them: Adobe's thumbnails, whatever their prefix, their bytes, and
- * the original that phones keep beside a blurred picture. */
-static const char *const holders[] = {":Thumbnails", "GImg:image", "GImage:Data"};
+ * the original that phones keep beside a blurred picture, and how far away all in it is. */
+static const char *const holders[] = {":Thumbnails", "GImg:image", "GImage:Data", "GDepth:Data"};
 /* And of those that promise a gain map or a video behind the picture, where we write none. */
 static const char *const promises[] = {"hdrgm:Version",       ":HDRGainMapVersion",
                                        "Container:Directory", "Camera:MotionPhoto",

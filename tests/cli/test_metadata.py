@@ -195,6 +195,7 @@ def test_pictures_in_packed_or_terse_xmp_go(folder):
     kinds = {"element": f"<a:image_b>1</a:image_b><q:Thumbnails><z>{text}</z></q:Thumbnails>",
              "attribute": f"<rdf:li xmpGImg:image = '{text}' xmpGImg:width='9'/>",
              "original": f"<GImage:Data>{text}</GImage:Data>",
+             "depths": f"<GDepth:Data>{text}</GDepth:Data>",
              "unclosed": f"<xmpGImg:image>{text}"}
     for name, inside in kinds.items():
         xmp = f"<x:xmpmeta><dc:title>kept</dc:title>{inside}</x:xmpmeta>".encode()

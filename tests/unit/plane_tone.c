@@ -94,35 +94,45 @@ static void tiles_keep_their_tone(void) {
   task_clear(&t);
 }
 
-/* A white post that is no source ends in the hole, on ground with that much contrast: how much
- * brighter it is below the post than beside it. */
-static double shine_of_a_post(double contrast) {
-  const area hole = {100, 100, 220, 200}, below = {146, 102, 162, 112};
-  const area left = {106, 102, 130, 112};
-  picture post = picture_new(320, 240, 3, RECEDE_U8);
+/* A white thing that is no source reaches 4 px and more into the hole, on ground with that much
+ * contrast: how much brighter it is below the thing than beside it. */
+static double shine_of(area thing, area below, area beside, double contrast) {
+  picture ground = picture_new(320, 240, 3, RECEDE_U8);
   for (int y = 0; y < 240; y++)
     for (int x = 0; x < 320; x++)
-      for (int k = 0; k < 3; k++) {
-        bool white = x >= 150 && x < 158 && y < 130;
-        double ground = .35 + contrast * (noise_at(x, y, 11) - .5);
-        picture_set(&post, x, y, k, white ? .95f : (float)ground);
-      }
-  task t = task_new(post, "orientation=frontal");
-  task_hole(&t, hole);
+      for (int k = 0; k < 3; k++)
+        picture_set(&ground, x, y, k, (float)(.35 + contrast * (noise_at(x, y, 11) - .5)));
+  picture_fill(&ground, thing, .95f);
+  task t = task_new(ground, "orientation=frontal");
+  task_hole(&t, (area){100, 100, 220, 200});
   t.source = picture_new(320, 240, 1, RECEDE_U8);
   picture_fill(&t.source, (area){0, 0, 320, 240}, 1);
-  picture_fill(&t.source, (area){140, 0, 168, 240}, 0);
+  picture_fill(&t.source, (area){thing.x0 - 10, 0, thing.x1 + 10, 240}, 0);
   task_succeeds(&t);
   double near = moments_of(&t.result, &t.mask, true, below, 0).mean;
-  double far = moments_of(&t.result, &t.mask, true, left, 0).mean;
-  g_test_message("contrast %.2f: below the post %.4f, beside it %.4f", contrast, near, far);
+  double far = moments_of(&t.result, &t.mask, true, beside, 0).mean;
+  g_test_message("contrast %.2f: below %.4f, beside %.4f", contrast, near, far);
   task_clear(&t);
   return near - far;
+}
+
+static double shine_of_a_post(double contrast) {
+  return shine_of((area){150, 0, 158, 130}, (area){146, 102, 162, 112}, (area){106, 102, 130, 112},
+                  contrast);
 }
 
 static void cut_things_do_not_shine(void) {
   g_assert_cmpfloat(shine_of_a_post(.1), <, .03);
   g_assert_cmpfloat(shine_of_a_post(.25), <, .055); /* by the mean alone .078 */
+}
+
+/* A line along a fifth of the hole's border: what it misses by must not be its own measure. */
+static void long_things_do_not_shine(void) {
+  for (int n = 0; n < 3; n++) {
+    double shine = shine_of((area){100, 84, 180, 104}, (area){110, 106, 160, 116},
+                            (area){196, 106, 216, 116}, .05 + .05 * n);
+    g_assert_cmpfloat(shine, <, .03);
+  }
 }
 
 /* Two gravels of one grain, the lower one darker. Their step is no drift of the light: without it
@@ -314,6 +324,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/tone/tiles", tiles_keep_their_tone);
   g_test_add_func("/tone/step", steps_stay);
   g_test_add_func("/tone/cut", cut_things_do_not_shine);
+  g_test_add_func("/tone/cut-along", long_things_do_not_shine);
   test_add_judged("/tone/contrast", contrast_follows_the_light);
   return g_test_run();
 }

@@ -21,6 +21,9 @@
  * hole: an edge to a known pixel that the copy misses by more than so many times the mean counts
  * less, by the fourth power. From twice the mean on, by the square, texture lost its tone, too. */
 #define MISSES_BY 4.f
+/* The mean is of misses that are no more than so many times the mean of all: a white line along the
+ * border would else be its own measure. */
+#define THINGS_MISS_BY 3.f
 /* What the border's misses do not have in common reaches so far: flowers that the border cuts do
  * not shine, and what is off a little leaves no seam. */
 #define REACH_OF_THINGS_PX 3.f
@@ -47,7 +50,8 @@ typedef struct composition {
   rc_relaxation join; /* what it adds to the values */
   rc_misses misses;
   float mean_change; /* square between neighbours, sum over channels */
-  float mean_miss;   /* how far copies are from the known pixels beside them, a distance */
+  float mean_miss;   /* how far copies are from the known pixels beside them, a distance, */
+  float most_miss;   /* of those that are no farther than this */
   row_sums *sums;
 } composition;
 
@@ -131,9 +135,11 @@ static float square_of(const composition *c, const float *miss) {
 
 static void sum_misses(const composition *c, int x, int y, row_sums *sums) {
   float there[3], miss[3];
-  for (int e = 0; e < 4; e++)
-    if (miss_at(c, x, y, e, there, miss))
-      sums->miss += sqrt((double)square_of(c, miss)), sums->misses++;
+  for (int e = 0; e < 4; e++) {
+    if (!miss_at(c, x, y, e, there, miss)) continue;
+    double distance = sqrt((double)square_of(c, miss));
+    if (distance <= (double)c->most_miss) sums->miss += distance, sums->misses++;
+  }
 }
 
 static void sum_row(void *user, int item, int thread) {
@@ -155,9 +161,9 @@ static void sum_row(void *user, int item, int thread) {
   c->sums[item] = sums;
 }
 
-static recede_status set_means(rc_context *context, composition *c) {
+static recede_status set_means_of(rc_context *context, composition *c, float most_miss) {
   row_sums all = {0, 0, 0, 0};
-  RC_TRY(RC_NEW(context, c->level->box_h, &c->sums));
+  c->most_miss = most_miss;
   RC_TRY(rc_parallel(context, c->level->box_h, sum_row, c));
   for (int row = 0; row < c->level->box_h; row++) {
     all.change += c->sums[row].change, all.changes += c->sums[row].changes;
@@ -166,6 +172,12 @@ static recede_status set_means(rc_context *context, composition *c) {
   c->mean_change = all.changes > 0 ? (float)(all.change / all.changes) : 0.f;
   c->mean_miss = all.misses > 0 ? (float)(all.miss / all.misses) : 0.f;
   return RECEDE_OK;
+}
+
+static recede_status set_means(rc_context *context, composition *c) {
+  RC_TRY(RC_NEW(context, c->level->box_h, &c->sums));
+  RC_TRY(set_means_of(context, c, INFINITY));
+  return set_means_of(context, c, THINGS_MISS_BY * c->mean_miss);
 }
 
 /* Of the edge between two pixels of one copy. */
@@ -181,8 +193,7 @@ static uint8_t count_of_fixed(const composition *c, const float *value, const fl
                               const float *miss) {
   float counts = (float)count_of(c, value, there), most = MISSES_BY * c->mean_miss;
   float missed = most > 0.f ? square_of(c, miss) / (most * most) : 0.f;
-  if (missed > 1.f) counts /= missed * missed;
-  return (uint8_t)(counts > LEAST_EDGE ? counts : LEAST_EDGE);
+  return (uint8_t)(missed > 1.f ? counts / (missed * missed) : counts);
 }
 
 /* What the edge to side e counts, and adds what it asks of pixel (x, y) beyond what the copies'
