@@ -43,7 +43,7 @@ static guint64 raised_hash(int threads, int kernel) {
 
 /* The bytes of one fill, on every machine and by every compiler. Whoever changes the engine on
  * purpose puts the new hash here. */
-#define HELD_HASH 0x909816f5004610d9u
+#define HELD_HASH 0x935502b00876eff9u
 
 static void held_bytes(void) { g_assert_cmphex(hash_with(2, -1, 7), ==, HELD_HASH); }
 
