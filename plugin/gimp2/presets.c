@@ -61,6 +61,7 @@ static void on_chosen(GtkComboBox *combo, gpointer user) {
   const rp_argument *rows = rp_arguments(settings.procedure, &count);
   if (gtk_combo_box_get_active(combo) < 0) return;
   char *name = gtk_combo_box_get_active_text(combo);
+  gtk_combo_box_set_active(combo, -1); /* or to choose it again would tell of no change */
   if (name && g_key_file_has_group(p->file, name)) {
     for (int i = 0; i < count; i++)
       if (rows[i].type != RP_DRAWABLE) settings.values[i] = read_value(p, name, &rows[i]);

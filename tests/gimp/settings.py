@@ -132,6 +132,9 @@ def check_presets_2(dialog):
     dialog.choose("small")
     settles_at(dialog, (300, 200, 60), "a preset brings its values back")
     dialog.set("Width", 320)
+    dialog.choose("small")
+    settles_at(dialog, (300, 200, 60), "and again, after a change")
+    dialog.set("Width", 320)
     text.setTextContents("")
     for place, letter in enumerate("small"):
         text.insertText(place, letter, 1)
@@ -139,6 +142,7 @@ def check_presets_2(dialog):
     settles_at(dialog, (320, 200, 60), "typing its name does not")
     dialog.press("Save preset")
     dialog.reset()
+    settles_at(dialog, (1024, 768, 45), "Reset sets the defaults again")
     dialog.choose("small")
     settles_at(dialog, (320, 200, 60), "but lets it be saved anew")
 
