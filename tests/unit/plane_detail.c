@@ -74,7 +74,7 @@ static void blur_is_made_up_for(void) {
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/detail/even", even_ground_stays_even);
-  g_test_add_func("/detail/crack", cracks_keep_their_contrast);
-  g_test_add_func("/detail/blur", blur_is_made_up_for);
+  test_add_judged("/detail/crack", cracks_keep_their_contrast);
+  test_add_judged("/detail/blur", blur_is_made_up_for);
   return g_test_run();
 }

@@ -380,7 +380,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/lines/go-on", lines_go_on);
   g_test_add_func("/lines/dashes", dashes_do_not_stop_it);
   g_test_add_func("/lines/others", others_do_not);
-  g_test_add_func("/lines/markings", markings_keep_both_edges);
+  test_add_judged("/lines/markings", markings_keep_both_edges);
   g_test_add_func("/lines/boards", boards_run);
   g_test_add_func("/lines/out-of-the-picture", boards_run_out_of_the_picture);
   g_test_add_func("/lines/one-by-one", boards_are_filled_one_by_one);
