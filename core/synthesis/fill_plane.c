@@ -151,12 +151,17 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
   for (int n = from; n < e->level_count && n <= from + 1 && !e->line_count; n++)
     RC_TRY(rc_lines_find(context, &e->images[n], &e->flags[n], n, n > from, &e->chart,
                          e->due && !e->of_all.row ? by : NULL, e->lines, &e->line_count));
+  RC_TRY(rc_leaving_add(context, &e->images[from], &e->flags[from], from, &e->chart, e->lines,
+                        &e->line_count));
   rc_dash_rows_drop_lines(dashes, e->lines, &e->line_count);
   /* A rail does not come again where its sleepers do. */
   for (int i = 0; i < e->line_count; i++) e->due = e->due && !rc_crossing_is_lone(&e->lines[i]);
   /* Where there are dashes it is they that repeat, not what the lines lie on. */
   RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, !dashes->count,
                        e->lines, &e->line_count, &e->rails));
+  /* Markings come in by themselves, and what lies beside them may have edges of its own. */
+  for (int i = 0; i < e->line_count; i++)
+    if (rc_crossing_is_marking(&e->lines[i])) e->rails = (rc_rails){0};
   if (e->params->engine_boundary && !e->due)
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
                             &e->line_count, &e->rails, &e->sides));
@@ -362,7 +367,11 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   /* After all that looks at what may be copied: a dash beside the hole says how much may stand out
    * there. */
-  for (int n = 0; n < e.level_count; n++) rc_dash_rows_take(&dashes, n, &e.flags[n]);
+  for (int n = 0; n < e.level_count; n++) {
+    rc_chart chart = rc_chart_coarser(e.chart, n);
+    rc_dash_rows_take(&dashes, n, &e.flags[n]);
+    rc_lines_take(e.lines, e.line_count, n, &chart, &e.flags[n]);
+  }
   /* Where there are two sides no tracks are looked for. */
   if (params->engine_boundary && !e.due && !rc_runs(&e.rails))
     rc_boundary_of_band(&e.chart, e.lines, e.line_count, &e.sides);

@@ -12,6 +12,11 @@
 #define LOCKED_BESIDE_PX 2.f
 #define LEAST_LOCKED_PX 1.f
 
+/* What is taken from the sources is so much wider than a line, and gets wider by so much on its
+ * way, for it may bend a little. */
+#define TAKEN_BESIDE_PX 3.f
+#define TAKEN_WIDENS .02f
+
 /* Nearly all that a sample counts lies so near, in px of the size that is wanted. */
 #define SAMPLED_PX 1
 
@@ -30,40 +35,94 @@ static bool may_be_laid(const rc_level *level, const rc_place *place) {
   return true;
 }
 
-static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
-  const rc_chart *chart = &level->chart;
-  float unit = (float)(1 << exponent);
-  float from = line->ends_inside ? 0 : -.1f;
-  bool sure = rc_crossing_is_sure(line);
-  uint8_t wanted = sure ? RC_ALLOWED : RC_SOURCE;
-  rc_crossing c = rc_crossing_coarser(*line, exponent);
-  rc_copy copies[RC_MOST_PIECES];
-  float dx = c.bx - c.ax, dy = c.by - c.ay, square = dx * dx + dy * dy;
-  for (int k = 0; k < c.pieces; k++) {
-    float t = ((float)k + .5f) / (float)c.pieces;
-    copies[k] = rc_copy_exact(chart, c.ax + t * dx - chart->x0, c.ay + t * dy - chart->y0,
-                              c.from_x[k] - chart->x0, c.from_y[k] - chart->y0);
+/* A level's view of a line. */
+typedef struct track {
+  const rc_level *level;
+  rc_crossing line; /* px of the level */
+  float dx, dy;     /* from a to b */
+  bool finest, sure;
+} track;
+
+/* Moves one piece to where another, or itself, comes from. */
+static rc_copy copy_of_piece(const track *t, int piece, int from) {
+  const rc_chart *chart = &t->level->chart;
+  const rc_crossing *c = &t->line;
+  float part = ((float)piece + .5f) / (float)c->pieces;
+  return rc_copy_exact(chart, c->ax + part * t->dx - chart->x0, c->ay + part * t->dy - chart->y0,
+                       c->from_x[from] - chart->x0, c->from_y[from] - chart->y0);
+}
+
+static bool may_be_taken(const track *t, rc_copy copy, int x, int y) {
+  const rc_level *level = t->level;
+  size_t source;
+  rc_place place = rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
+  return rc_place_at(level, &place, &source) &&
+         level->flags[source] & (t->sure ? RC_ALLOWED : RC_SOURCE) &&
+         !(t->sure && t->finest && !may_be_laid(level, &place));
+}
+
+/* What lies to a side of a piece may come from the hole, where those halves of a line meet that are
+ * taken from its two ends. Of a sure line it then comes from where the nearest piece does from
+ * where it may, so that no gap is left. */
+static bool choose_copy(const track *t, int piece, int x, int y, rc_copy *copy) {
+  for (int k = 0; k < (t->sure ? 2 * t->line.pieces : 1); k++) {
+    int from = piece + (k % 2 ? (k + 1) / 2 : -(k / 2));
+    if (from < 0 || from >= t->line.pieces) continue;
+    *copy = copy_of_piece(t, piece, from);
+    if (may_be_taken(t, *copy, x, y)) return true;
   }
+  return false;
+}
+
+static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
+  float unit = (float)(1 << exponent), from = line->ends_inside ? 0 : -.1f;
+  track along = {
+      level, rc_crossing_coarser(*line, exponent), 0, 0, exponent == 0, rc_crossing_is_sure(line)};
+  const rc_crossing *c = &along.line;
+  float dx = along.dx = c->bx - c->ax, dy = along.dy = c->by - c->ay, square = dx * dx + dy * dy;
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
-      float t = (((float)x - c.ax) * dx + ((float)y - c.ay) * dy) / square;
+      float t = (((float)x - c->ax) * dx + ((float)y - c->ay) * dy) / square;
       float px = (float)x, py = (float)y;
-      float reach = c.reach_px[rc_crossing_is_right(&c, px, py)] * rc_chart_w(chart, px, py);
+      float reach =
+          c->reach_px[rc_crossing_is_right(c, px, py)] * rc_chart_w(&level->chart, px, py);
       reach = fmaxf(fmaxf(LOCKED_PX / unit, LEAST_LOCKED_PX), reach + LOCKED_BESIDE_PX / unit);
       if (!rc_level_is_target(level, x, y) || t < from || t > 1.1f ||
-          rc_crossing_distance(&c, px, py) > reach)
+          rc_crossing_distance(c, px, py) > reach)
         continue;
-      int piece = (int)(fminf(fmaxf(t, 0), .999f) * (float)c.pieces);
-      rc_place place =
-          rc_copy_place(chart, copies[piece], rc_level_x(level, x), rc_level_y(level, y));
-      size_t at = rc_level_at(level, x, y), source;
-      if (!rc_place_at(level, &place, &source) || !(level->flags[source] & wanted) ||
-          (sure && exponent == 0 && !may_be_laid(level, &place)))
-        continue;
-      level->field[at] = copies[piece];
+      int piece = (int)(fminf(fmaxf(t, 0), .999f) * (float)c->pieces);
+      size_t at = rc_level_at(level, x, y);
+      rc_copy copy;
+      if (!choose_copy(&along, piece, x, y, &copy)) continue;
+      level->field[at] = copy;
       level->cost[at] = 0;
-      level->locked[at] = sure ? RC_LOCKED_SURELY : RC_LOCKED;
+      level->locked[at] = along.sure ? RC_LOCKED_SURELY : RC_LOCKED;
     }
+}
+
+static void take_line(const rc_crossing *line, int exponent, const rc_chart *chart,
+                      const rc_mask *flags) {
+  float unit = (float)(1 << exponent);
+  rc_crossing c = rc_crossing_coarser(*line, exponent);
+  float length = rc_crossing_length(&c), ux = (c.bx - c.ax) / length, uy = (c.by - c.ay) / length;
+  for (int y = 0; y < flags->height; y++)
+    for (int x = 0; x < flags->width; x++) {
+      uint8_t *flag = rc_flag(flags, x, y);
+      float px = (float)x, py = (float)y, w = rc_chart_w(chart, px, py);
+      float along = (px - c.ax) * ux + (py - c.ay) * uy;
+      float beyond = along < 0 && !line->ends_inside ? -along : along - length;
+      if (!(*flag & RC_SOURCE) || !(w > 0) || beyond < 0) continue;
+      float reach = c.reach_px[rc_crossing_is_right(&c, px, py)] + TAKEN_WIDENS * beyond;
+      if (rc_crossing_distance(&c, px, py) <= reach * w + TAKEN_BESIDE_PX / unit + .5f)
+        *flag &= (uint8_t)~RC_SOURCE;
+    }
+}
+
+void rc_lines_take(const rc_crossing *lines, int count, int exponent, const rc_chart *chart,
+                   const rc_mask *flags) {
+  for (int i = 0; i < count; i++)
+    if (rc_crossing_is_marking(&lines[i]) && lines[i].reach_px[0] + lines[i].reach_px[1] > 0)
+      take_line(&lines[i], exponent, chart, flags);
 }
 
 recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int count, int exponent,

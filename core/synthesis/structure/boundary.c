@@ -270,7 +270,7 @@ void rc_boundary_of_band(const rc_chart *chart, const rc_crossing *lines, int co
 static bool crosses_a_lone_line(const rc_chart *chart, rc_copy direction, const rc_crossing *lines,
                                 int count) {
   for (int i = 0; i < count; i++)
-    if (rc_crossing_is_lone(&lines[i]) && lines[i].strength >= RC_CLEAR_STRENGTH &&
+    if (rc_crossing_is_marking(&lines[i]) &&
         !rc_parallel_in_plane(direction, rc_crossing_direction(chart, &lines[i])))
       return true;
   return false;

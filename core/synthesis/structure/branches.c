@@ -19,6 +19,8 @@
 /* And across, px. */
 #define ACROSS_STEP_PX .5f
 #define ACROSS 4
+/* A strip between the hole and the picture's end that is no longer along a line shows no run. */
+#define STRIP_PX 32
 /* So many ends, the strongest, are looked at. */
 #define MOST_ENDS 16
 
@@ -205,6 +207,23 @@ static recede_status add_crossing(rc_context *context, const rc_crossing *all, i
   return RECEDE_OK;
 }
 
+static work work_at(const rc_seen *seen, const rc_chart *here, int exponent, rc_crossing *lines,
+                    int count) {
+  work w = {.seen = seen, .chart = here, .lines = lines, .line_count = count};
+  w.reach_px = rc_longer_side(rc_box_of(seen->flags, RC_TARGET));
+  for (int i = 0; i < count; i++) lines[i] = rc_crossing_coarser(lines[i], exponent);
+  return w;
+}
+
+/* The lines are in px of the finest level again, those from before on seen by brightness. */
+static void give_back(const work *w, int exponent, int before, const float *axis, int *count) {
+  *count = w->line_count;
+  for (int i = 0; i < *count; i++) {
+    w->lines[i] = rc_crossing_coarser(w->lines[i], -exponent);
+    if (i >= before) memcpy(w->lines[i].axis, axis, sizeof w->lines[i].axis);
+  }
+}
+
 recede_status rc_branches_add(rc_context *context, const rc_image *image, const rc_mask *mask,
                               int exponent, const rc_chart *chart, rc_crossing lines[RC_ALL_LINES],
                               int *count) {
@@ -217,19 +236,64 @@ recede_status rc_branches_add(rc_context *context, const rc_image *image, const 
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_see(context, image, mask, axis, &seen));
   RC_TRY(rc_ends_find(context, &seen, &ends));
-  work w = {.seen = &seen, .chart = &here, .lines = lines, .line_count = *count};
-  w.reach_px = rc_longer_side(rc_box_of(mask, RC_TARGET));
-  for (int i = 0; i < *count; i++) lines[i] = rc_crossing_coarser(lines[i], exponent);
+  work w = work_at(&seen, &here, exponent, lines, *count);
   rc_lines_pair_up(&ends, RC_SURE_STRENGTH, all, &all_count);
   RC_TRY(add_crossing(context, all, all_count, &w));
   collect(&ends, &w);
   while (w.line_count + 2 <= RC_ALL_LINES && (end_at_line(&w) || end_at_each_other(&w)))
     RC_TRY(rc_poll(context));
-  *count = w.line_count;
-  for (int i = 0; i < *count; i++) {
-    lines[i] = rc_crossing_coarser(lines[i], -exponent);
-    if (i >= before) memcpy(lines[i].axis, axis, sizeof lines[i].axis);
+  give_back(&w, exponent, before, axis, count);
+  rc_release(context, mark);
+  return rc_poll(context);
+}
+
+/* How far inwards an end leaves the hole where the picture ends, or nearly so; else infinite. */
+static float way_out(const rc_mask *flags, const loose *end) {
+  int last = 0;
+  for (int way = 1;; way++) {
+    float x = end->x - (float)way * end->out[0], y = end->y - (float)way * end->out[1];
+    if (!rc_inside(flags->width, flags->height, rc_floor(x + .5f), rc_floor(y + .5f)))
+      return last ? (float)last : INFINITY;
+    if (is_target(flags, x, y))
+      last = way;
+    else if (way - last > STRIP_PX)
+      return INFINITY;
   }
+}
+
+recede_status rc_leaving_add(rc_context *context, const rc_image *image, const rc_mask *mask,
+                             int exponent, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
+                             int *count) {
+  rc_chart here = rc_chart_coarser(*chart, exponent);
+  rc_seen seen;
+  rc_ends ends;
+  int before = *count;
+  const float *axis = rc_brightness_axis(image);
+  rc_block *mark = rc_mark(context);
+  RC_TRY(rc_see(context, image, mask, axis, &seen));
+  RC_TRY(rc_ends_find(context, &seen, &ends));
+  work w = work_at(&seen, &here, exponent, lines, *count);
+  collect(&ends, &w);
+  for (int i = 0; i < w.end_count && w.line_count < RC_MOST_LINES; i++) {
+    const loose *end = &w.ends[i];
+    float way = way_out(mask, end);
+    RC_TRY(rc_poll(context));
+    if (!(end->strength >= RC_CLEAR_STRENGTH && end->as_strong <= RC_HARDLY_AS_STRONG &&
+          way >= SHORTEST_PX && way < INFINITY))
+      continue;
+    rc_crossing c = {.ax = end->x - way * end->out[0],
+                     .ay = end->y - way * end->out[1],
+                     .bx = end->x,
+                     .by = end->y,
+                     .strength = end->strength,
+                     .as_strong = end->as_strong,
+                     .ends_inside = true,
+                     .leaves = true};
+    c.alone = rc_end_stands_alone(&seen, &here, &c, w.reach_px);
+    if (c.alone && rc_follow(&seen, &here, rc_windows_of(&c, false), &c) && rc_crossing_is_lone(&c))
+      lines[w.line_count++] = c;
+  }
+  give_back(&w, exponent, before, axis, count);
   rc_release(context, mark);
   return rc_poll(context);
 }

@@ -60,6 +60,10 @@ bool rc_crossing_is_lone(const rc_crossing *line) {
   return line->alone && rc_crossing_is_sure(line);
 }
 
+bool rc_crossing_is_marking(const rc_crossing *line) {
+  return rc_crossing_is_lone(line) && line->strength >= RC_CLEAR_STRENGTH;
+}
+
 static bool is_no_faint_one(const rc_crossing *line) { return !line->faint; }
 
 static void keep(bool (*which)(const rc_crossing *), rc_crossing lines[RC_MOST_LINES], int *count) {

@@ -30,6 +30,7 @@ typedef struct rc_crossing {
   bool alone;       /* hardly any parallel to it looks the same */
   bool faint;       /* it is known only by what tells two textures apart */
   bool ends_inside; /* at a */
+  bool leaves;      /* that is at the picture's end, or so near that no run of it is seen there */
   bool band;        /* it is wide, and hardly anything at the hole's border is as strong */
   float axis[3];    /* the weights of colours it was seen by */
   /* How far it reaches to its left and right, px where w = 1; 0 where that is not told. */
@@ -47,6 +48,8 @@ bool rc_crossing_is_right(const rc_crossing *line, float x, float y);
 bool rc_crossing_is_sure(const rc_crossing *line);
 /* It is sure, and stands alone: no joint of many. */
 bool rc_crossing_is_lone(const rc_crossing *line);
+/* And it is clear, as markings and rails are. */
+bool rc_crossing_is_marking(const rc_crossing *line);
 /* Tells whether one that was followed is a band. seen_coarser: than other lines are. */
 void rc_crossing_tell_band(rc_crossing *line, bool seen_coarser);
 /* After that: how far a faint one reaches is chance. */

@@ -25,9 +25,11 @@
 /* Where a sure one is less than half as wide as beside the hole, it need not look the same. */
 #define LEAST_AS_WIDE .5f
 #define LEAST_OF_CONTRAST .02f /* of its square: less is another thing's slope */
-/* How far it reaches is looked for within so many samples to each side. Its grounds may differ by
- * so much of what stands out, and where less of that is left it ends. */
+/* How far it reaches is looked for within so many samples to each side, then, of a broad marking,
+ * within twice as many, where so many px from the hole it has none of it beside it. Its grounds may
+ * differ by so much of what stands out, and where less of that is left it ends. */
 #define REACH_SAMPLES 14
+#define BROAD_FROM_PX 16.f
 #define MOST_OF_STEP .35f
 #define LEAST_OF_LINE .25f
 /* From piece to piece it may bend by so much. */
@@ -53,8 +55,10 @@
 /* Of a branch that is clear so many times the same piece may be moved in, for what it leaves ends,
  * too; so others come of edges of stones. */
 #define MOST_GROUPS 2
-/* Sources may be this much smaller than what they fill; how much larger depends on the way. */
+/* Sources may be this much smaller than what they fill, and more of what leads out of the picture
+ * to the viewer, for there are no others; how much larger depends on the way. */
 #define MOST_MAGNIFIED 1.7f
+#define MOST_MAGNIFIED_LEAVING 3.f
 /* Each way to follow it, until one does. Of a line that leads to the viewer sources are larger and
  * its profile wider, and its pieces short, for far away they are long in the plane. But short ones
  * may wobble, and thin lines far away are as wide as a blur is. */
@@ -69,7 +73,9 @@ static const struct way {
 #define LEAST_W .1f
 
 /* Where the line is parted: what lies before comes from beyond a, the rest from beyond b. */
-static const float splits[] = {1, 0, .5f, .25f, .75f, .125f, .375f, .625f, .875f};
+enum { FROM_A, FROM_B };
+static const float splits[] = {[FROM_A] = 1, [FROM_B] = 0, .5f,   .25f, .75f,
+                               .125f,        .375f,        .625f, .875f};
 
 /* Profiles are read across the line's direction from a to b, in the same sense on both sides. */
 typedef struct frame {
@@ -77,7 +83,7 @@ typedef struct frame {
   const rc_chart *chart;
   rc_crossing *line;
   float length;
-  float most_reduced;
+  float most_reduced, most_magnified;
   float farther_px; /* than from right beside the hole its sources lie */
   int windows;      /* in which it must go on */
 } frame;
@@ -94,6 +100,7 @@ static frame frame_of(const rc_seen *picture, const rc_chart *chart, int windows
              .chart = chart,
              .line = line,
              .most_reduced = way->most_reduced,
+             .most_magnified = line->leaves ? MOST_MAGNIFIED_LEAVING : MOST_MAGNIFIED,
              .windows = windows};
   if (way->widens) f.ruler.chart = chart;
   line->pieces = way->pieces;
@@ -151,15 +158,15 @@ static bool goes_on(const frame *f, float outwards, float x, float y, const rc_p
 /* How far the line reaches to each side at an end: from what stands out most in its middle on while
  * it is not yet as the ground is, which is the same on both sides. Where two grounds meet there is
  * no such thing. An end so far away that a pixel blurs it says nothing. */
-static void reach(const frame *f, float outwards, float x, float y, float reach_px[2]) {
-  enum { FAR = REACH_SAMPLES };
-  float values[2 * FAR + 1], *at = values + FAR, most = 0;
+static void reach_among(const frame *f, float outwards, float x, float y, int far, float from_px,
+                        float reach_px[2]) {
+  float values[4 * REACH_SAMPLES + 1], *at = values + far, most = 0;
   int middle = 0;
-  for (int o = -FAR; o <= FAR; o++)
-    if (!rc_ruler_mean(&f->ruler, x, y, (float)o, outwards * RC_PROFILE_FROM_PX, outwards,
-                       RC_PROFILE_NEAR_PX, &at[o]))
+  for (int o = -far; o <= far; o++)
+    if (!rc_ruler_mean(&f->ruler, x, y, (float)o, outwards * from_px, outwards, RC_PROFILE_NEAR_PX,
+                       &at[o]))
       return;
-  float left = (at[-FAR] + at[1 - FAR]) / 2, right = (at[FAR] + at[FAR - 1]) / 2;
+  float left = (at[-far] + at[1 - far]) / 2, right = (at[far] + at[far - 1]) / 2;
   float w = rc_chart_w(f->chart, x, y), px = rc_ruler_px(f->chart, x, y), unit = px / w;
   float ground = (left + right) / 2;
   for (int o = -RC_PROFILE_HALF; o <= RC_PROFILE_HALF; o++)
@@ -167,9 +174,16 @@ static void reach(const frame *f, float outwards, float x, float y, float reach_
   if (!(w >= px) || fabsf(left - right) > MOST_OF_STEP * most) return;
   for (int side = 0; side < 2; side++) {
     int o = middle, step = side ? 1 : -1;
-    while (abs(o) < FAR && fabsf(at[o] - ground) > LEAST_OF_LINE * most) o += step;
-    if (abs(o) < FAR) reach_px[side] = fmaxf(reach_px[side], (float)(step * o) * unit);
+    while (abs(o) < far && fabsf(at[o] - ground) > LEAST_OF_LINE * most) o += step;
+    if (abs(o) < far) reach_px[side] = fmaxf(reach_px[side], (float)(step * o) * unit);
   }
+}
+
+static void reach(const frame *f, float outwards, float x, float y) {
+  float *told = f->line->reach_px;
+  reach_among(f, outwards, x, y, REACH_SAMPLES, RC_PROFILE_FROM_PX, told);
+  if (f->line->leaves && told[0] == 0 && told[1] == 0)
+    reach_among(f, outwards, x, y, 2 * REACH_SAMPLES, BROAD_FROM_PX, told);
 }
 
 /* Where the straight line's point t (0 = a, 1 = b) comes from when the line is moved along itself
@@ -184,7 +198,7 @@ static bool straight_source(const frame *f, float split, float t, float *x, floa
       rc_copy_between(&flat, ax + split * dx, ay + split * dy, ax + to * dx, ay + to * dy);
   rc_place place = rc_copy_place(&flat, copy, ax + t * dx, ay + t * dy);
   *x = place.x + flat.x0, *y = place.y + flat.y0;
-  return !place.beyond && place.ratio < f->most_reduced && place.ratio > 1 / MOST_MAGNIFIED;
+  return !place.beyond && place.ratio < f->most_reduced && place.ratio > 1 / f->most_magnified;
 }
 
 /* Finds one piece's source near the straight one, the bend of the piece before taken over. kept:
@@ -291,25 +305,27 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int wi
   rc_profile own_a, own_b;
   float most = LEAST_KEPT;
   rc_crossing best;
-  bool found = false;
+  bool found = false, leaves = line->leaves;
   frame f = frame_of(picture, chart, windows, way, line);
-  if (!pin(&f, -1, &line->ax, &line->ay, &own_a) || !pin(&f, 1, &line->bx, &line->by, &own_b))
+  if ((!leaves && !pin(&f, -1, &line->ax, &line->ay, &own_a)) ||
+      !pin(&f, 1, &line->bx, &line->by, &own_b))
     return false;
   set_frame(&f);
-  if (!goes_on(&f, -1, line->ax, line->ay, &own_a) || !goes_on(&f, 1, line->bx, line->by, &own_b))
+  if ((!leaves && !goes_on(&f, -1, line->ax, line->ay, &own_a)) ||
+      !goes_on(&f, 1, line->bx, line->by, &own_b))
     return false;
   for (; f.farther_px <= FARTHEST_PX && !found; f.farther_px += FARTHER_PX)
-    for (int i = 0; i < way->splits; i++) {
-      float kept = follow_both(&f, splits[i], &own_a, &own_b);
+    for (int i = leaves ? FROM_B : 0; i < (leaves ? FROM_B + 1 : way->splits); i++) {
+      float kept = follow_both(&f, splits[i], leaves ? &own_b : &own_a, &own_b);
       if (kept <= most) continue;
       most = kept, best = *line, best.kept = kept, found = true;
     }
   if (!found) return false;
-  prefer_clean(&f, way, &own_a, &own_b, &best);
+  if (!leaves) prefer_clean(&f, way, &own_a, &own_b, &best);
   *line = best;
   f.ruler.chart = chart;
-  reach(&f, -1, line->ax, line->ay, line->reach_px);
-  reach(&f, 1, line->bx, line->by, line->reach_px);
+  if (!leaves) reach(&f, -1, line->ax, line->ay);
+  reach(&f, 1, line->bx, line->by);
   return true;
 }
 
