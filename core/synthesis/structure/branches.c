@@ -247,6 +247,18 @@ recede_status rc_branches_add(rc_context *context, const rc_image *image, const 
   return rc_poll(context);
 }
 
+/* Whether it is part of a broad line that leaves, too. */
+static bool lies_in_another(const work *w, const loose *end) {
+  for (int i = 0; i < w->line_count; i++) {
+    const rc_crossing *c = &w->lines[i];
+    float reach_px = c->reach_px[rc_crossing_is_right(c, end->x, end->y)];
+    if (c->leaves && rc_crossing_distance(c, end->x, end->y) <=
+                         RC_PROFILE_HALF + reach_px * rc_chart_w(w->chart, end->x, end->y))
+      return true;
+  }
+  return false;
+}
+
 /* How far inwards an end leaves the hole where the picture ends, or nearly so; else infinite. */
 static float way_out(const rc_mask *flags, const loose *end) {
   int last = 0;
@@ -279,7 +291,8 @@ recede_status rc_leaving_add(rc_context *context, const rc_image *image, const r
     float way = way_out(mask, end);
     RC_TRY(rc_poll(context));
     if (!(end->strength >= RC_CLEAR_STRENGTH && end->as_strong <= RC_HARDLY_AS_STRONG &&
-          way >= SHORTEST_PX && way < INFINITY))
+          way >= SHORTEST_PX && way < INFINITY) ||
+        lies_in_another(&w, end))
       continue;
     rc_crossing c = {.ax = end->x - way * end->out[0],
                      .ay = end->y - way * end->out[1],

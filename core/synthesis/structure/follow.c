@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "kernels/kernels.h"
+#include "synthesis/structure/reach.h"
 #include "synthesis/structure/strays.h"
 
 /* A line's own profile is found within so many px of where a straight fit over a longer run puts
@@ -25,13 +26,10 @@
 /* Where a sure one is less than half as wide as beside the hole, it need not look the same. */
 #define LEAST_AS_WIDE .5f
 #define LEAST_OF_CONTRAST .02f /* of its square: less is another thing's slope */
-/* How far it reaches is looked for within so many samples to each side, then, of a broad marking,
- * within twice as many, where so many px from the hole it has none of it beside it. Its grounds may
- * differ by so much of what stands out, and where less of that is left it ends. */
-#define REACH_SAMPLES 14
-#define BROAD_FROM_PX 16.f
-#define MOST_OF_STEP .35f
-#define LEAST_OF_LINE .25f
+/* What is seen at one end only is turned until it lies where the line is so far away, and twice as
+ * far and so on. */
+#define STRAIGHT_STEP_PX 24.f
+#define STRAIGHT_STEPS 4
 /* From piece to piece it may bend by so much. */
 #define MOST_BEND_PX 1.f
 /* The part of its contrast that must be left, in the mean over the pieces. Dotted cracks keep .8,
@@ -126,6 +124,33 @@ static bool pin(const frame *f, float outwards, float *x, float *y, rc_profile *
   return rc_profile_mean(&f->ruler, *x, *y, from, outwards, RC_PROFILE_NEAR_PX, own);
 }
 
+/* The correlation of what lies so far out, and so far across, with own; -1: nothing is known. */
+static float likeness_at(const frame *f, float along, float across, const rc_profile *own) {
+  const rc_crossing *c = f->line;
+  rc_profile here;
+  if (!rc_profile_mean(&f->ruler, c->bx - f->ruler.uy * across, c->by + f->ruler.ux * across, along,
+                       1, RC_PROFILE_NEAR_PX, &here))
+    return -1;
+  float square = rc_profile_dot(&here, &here) * rc_profile_dot(own, own);
+  return square > 0 ? rc_profile_dot(&here, own) / sqrtf(square) : -1;
+}
+
+static void straighten(frame *f, const rc_profile *own) {
+  rc_crossing *c = f->line;
+  for (int n = 1; n <= STRAIGHT_STEPS; n++) {
+    float along = STRAIGHT_STEP_PX * (float)n, most = LEAST_GOING_ON, off = NAN;
+    for (float across = -PINNED_WITHIN_PX; across <= PINNED_WITHIN_PX; across += PINNED_STEP_PX) {
+      float likeness = likeness_at(f, along, across, own);
+      if (likeness > most) most = likeness, off = across;
+    }
+    if (isnan(off)) return;
+    float turn = off / (along + RC_PROFILE_NEAR_PX / 2.f);
+    float ux = f->ruler.ux - turn * f->ruler.uy, uy = f->ruler.uy + turn * f->ruler.ux;
+    c->ax = c->bx - f->length * ux, c->ay = c->by - f->length * uy;
+    set_frame(f);
+  }
+}
+
 /* How many times as wide the ground is so far out as at an end. */
 static float as_wide(const frame *f, float x, float y, float outwards) {
   return rc_chart_w(f->chart, x + outwards * f->ruler.ux, y + outwards * f->ruler.uy) /
@@ -153,37 +178,6 @@ static bool goes_on(const frame *f, float outwards, float x, float y, const rc_p
     if (known && most < LEAST_GOING_ON) return false;
   }
   return true;
-}
-
-/* How far the line reaches to each side at an end: from what stands out most in its middle on while
- * it is not yet as the ground is, which is the same on both sides. Where two grounds meet there is
- * no such thing. An end so far away that a pixel blurs it says nothing. */
-static void reach_among(const frame *f, float outwards, float x, float y, int far, float from_px,
-                        float reach_px[2]) {
-  float values[4 * REACH_SAMPLES + 1], *at = values + far, most = 0;
-  int middle = 0;
-  for (int o = -far; o <= far; o++)
-    if (!rc_ruler_mean(&f->ruler, x, y, (float)o, outwards * from_px, outwards, RC_PROFILE_NEAR_PX,
-                       &at[o]))
-      return;
-  float left = (at[-far] + at[1 - far]) / 2, right = (at[far] + at[far - 1]) / 2;
-  float w = rc_chart_w(f->chart, x, y), px = rc_ruler_px(f->chart, x, y), unit = px / w;
-  float ground = (left + right) / 2;
-  for (int o = -RC_PROFILE_HALF; o <= RC_PROFILE_HALF; o++)
-    if (fabsf(at[o] - ground) > most) most = fabsf(at[o] - ground), middle = o;
-  if (!(w >= px) || fabsf(left - right) > MOST_OF_STEP * most) return;
-  for (int side = 0; side < 2; side++) {
-    int o = middle, step = side ? 1 : -1;
-    while (abs(o) < far && fabsf(at[o] - ground) > LEAST_OF_LINE * most) o += step;
-    if (abs(o) < far) reach_px[side] = fmaxf(reach_px[side], (float)(step * o) * unit);
-  }
-}
-
-static void reach(const frame *f, float outwards, float x, float y) {
-  float *told = f->line->reach_px;
-  reach_among(f, outwards, x, y, REACH_SAMPLES, RC_PROFILE_FROM_PX, told);
-  if (f->line->leaves && told[0] == 0 && told[1] == 0)
-    reach_among(f, outwards, x, y, 2 * REACH_SAMPLES, BROAD_FROM_PX, told);
 }
 
 /* Where the straight line's point t (0 = a, 1 = b) comes from when the line is moved along itself
@@ -311,6 +305,7 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int wi
       !pin(&f, 1, &line->bx, &line->by, &own_b))
     return false;
   set_frame(&f);
+  if (leaves) straighten(&f, &own_b);
   if ((!leaves && !goes_on(&f, -1, line->ax, line->ay, &own_a)) ||
       !goes_on(&f, 1, line->bx, line->by, &own_b))
     return false;
@@ -324,8 +319,8 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int wi
   if (!leaves) prefer_clean(&f, way, &own_a, &own_b, &best);
   *line = best;
   f.ruler.chart = chart;
-  if (!leaves) reach(&f, -1, line->ax, line->ay);
-  reach(&f, 1, line->bx, line->by);
+  if (!leaves) rc_reach_measure(&f.ruler, -1, line->ax, line->ay, false, line->reach_px);
+  rc_reach_measure(&f.ruler, 1, line->bx, line->by, leaves, line->reach_px);
   return true;
 }
 
