@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/real.h"
 #include "kernels/kernels.h"
 #include "synthesis/structure/reach.h"
 #include "synthesis/structure/strays.h"
@@ -53,11 +54,14 @@
 /* Of a branch that is clear so many times the same piece may be moved in, for what it leaves ends,
  * too; so others come of edges of stones. */
 #define MOST_GROUPS 2
+/* What is magnified is blurred: of all the ways to take a line that one is best whose sources keep
+ * most of its contrast, less so much for each octave that they are magnified by in the mean. */
+#define PRICE_OF_MAGNIFICATION .2f
 /* Sources may be this much smaller than what they fill, and more of what leads out of the picture
  * to the viewer, for there are no others; how much larger depends on the way. */
 #define MOST_MAGNIFIED 1.7f
 #define MOST_MAGNIFIED_LEAVING 3.f
-/* Each way to follow it, until one does. Of a line that leads to the viewer sources are larger and
+/* Each way to follow it. Of a line that leads to the viewer sources are larger and
  * its profile wider, and its pieces short, for far away they are long in the plane. But short ones
  * may wobble, and thin lines far away are as wide as a blur is. */
 static const struct way {
@@ -294,10 +298,22 @@ static void prefer_clean(frame *f, const struct way *way, const rc_profile *own_
     }
 }
 
+/* By how many octaves its pieces' sources are magnified, in the mean. */
+static float octaves_magnified(const frame *f) {
+  const rc_crossing *c = f->line;
+  float sum = 0;
+  for (int k = 0; k < c->pieces; k++) {
+    float t = ((float)k + .5f) / (float)c->pieces;
+    float own = rc_chart_w(f->chart, c->ax + t * (c->bx - c->ax), c->ay + t * (c->by - c->ay));
+    sum += fmaxf(rc_log2(own / rc_chart_w(f->chart, c->from_x[k], c->from_y[k])), 0);
+  }
+  return sum / (float)c->pieces;
+}
+
+/* worth: what is kept, less the price. */
 static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int windows,
-                           const struct way *way, rc_crossing *line) {
+                           const struct way *way, rc_crossing *line, float *worth) {
   rc_profile own_a, own_b;
-  float most = LEAST_KEPT;
   rc_crossing best;
   bool found = false, leaves = line->leaves;
   frame f = frame_of(picture, chart, windows, way, line);
@@ -312,8 +328,9 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int wi
   for (; f.farther_px <= FARTHEST_PX && !found; f.farther_px += FARTHER_PX)
     for (int i = leaves ? FROM_B : 0; i < (leaves ? FROM_B + 1 : way->splits); i++) {
       float kept = follow_both(&f, splits[i], leaves ? &own_b : &own_a, &own_b);
-      if (kept <= most) continue;
-      most = kept, best = *line, best.kept = kept, found = true;
+      float here = kept - PRICE_OF_MAGNIFICATION * octaves_magnified(&f);
+      if (kept <= LEAST_KEPT || (found && here <= *worth)) continue;
+      *worth = here, best = *line, best.kept = kept, found = true;
     }
   if (!found) return false;
   if (!leaves) prefer_clean(&f, way, &own_a, &own_b, &best);
@@ -330,15 +347,17 @@ int rc_windows_of(const rc_crossing *line, bool seen_coarser) {
 }
 
 bool rc_follow(const rc_seen *picture, const rc_chart *chart, int windows, rc_crossing *line) {
+  const rc_crossing from = *line;
+  float times = nearer(chart, line), most = 0, worth;
+  bool found = false;
   for (size_t n = 0; n < sizeof ways / sizeof *ways; n++) {
-    rc_crossing c = *line;
-    float times = nearer(chart, line);
+    rc_crossing c = from;
     if (ways[n].widens && !(times > LEAST_NEARER && times < INFINITY)) continue;
-    if (!follow_one_way(picture, chart, windows, &ways[n], &c)) continue;
-    *line = c;
-    return true;
+    if (!follow_one_way(picture, chart, windows, &ways[n], &c, &worth)) continue;
+    if (!found || worth > most) *line = c, most = worth;
+    found = true;
   }
-  return false;
+  return found;
 }
 
 /* Its pieces in groups of so many, each from beside the hole again: a clear joint may be shorter
