@@ -198,8 +198,10 @@ static recede_status add_crossing(rc_context *context, const rc_crossing *all, i
     RC_TRY(rc_poll(context));
     rc_crossing c = all[i];
     loose a = {c.ax, c.ay, {0, 0}, 0, 0}, b = {c.bx, c.by, {0, 0}, 0, 0};
+    bool clear = c.strength >= RC_CLEAR_STRENGTH && c.as_strong <= RC_HARDLY_AS_STRONG;
+    int far_px = clear ? w->reach_px / 2 : w->reach_px; /* the picture may end there */
     if (is_continued(w, &a) || is_continued(w, &b) || c.as_strong > RC_MOST_AS_STRONG ||
-        !rc_stands_alone(w->seen, w->chart, &c, w->reach_px, NULL) ||
+        !rc_stands_alone(w->seen, w->chart, &c, far_px, NULL) ||
         !rc_follow(w->seen, w->chart, rc_windows_of(&c, false), &c) || !rc_crossing_is_sure(&c))
       continue;
     w->lines[w->line_count++] = c; /* not alone: rows of a chess board are no rails */
@@ -302,11 +304,16 @@ recede_status rc_leaving_add(rc_context *context, const rc_image *image, const r
                      .as_strong = end->as_strong,
                      .ends_inside = true,
                      .leaves = true};
-    c.alone = rc_end_stands_alone(&seen, &here, &c, w.reach_px);
+    /* Beside it, too, the picture ends: half as far is looked. */
+    c.alone = rc_end_stands_alone(&seen, &here, &c, w.reach_px / 2);
     if (c.alone && rc_follow(&seen, &here, rc_windows_of(&c, false), &c) && rc_crossing_is_lone(&c))
       lines[w.line_count++] = c;
   }
   give_back(&w, exponent, before, axis, count);
+  if (*count > before) {
+    rc_crossings_keep_sure(lines, count);
+    rc_crossings_sort(lines, *count);
+  }
   rc_release(context, mark);
   return rc_poll(context);
 }

@@ -73,8 +73,20 @@ static void keep(bool (*which)(const rc_crossing *), rc_crossing lines[RC_MOST_L
   *count = kept;
 }
 
+void rc_crossings_sort(rc_crossing *lines, int count) {
+  for (int i = 1; i < count; i++)
+    for (int k = i; k > 0 && lines[k].strength > lines[k - 1].strength; k--) {
+      rc_crossing weaker = lines[k - 1];
+      lines[k - 1] = lines[k], lines[k] = weaker;
+    }
+}
+
 void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count) {
   keep(rc_crossing_is_lone, lines, count);
+}
+
+void rc_crossings_keep_sure(rc_crossing lines[RC_MOST_LINES], int *count) {
+  keep(rc_crossing_is_sure, lines, count);
 }
 
 void rc_crossings_drop_faint(rc_crossing *lines, int *count) {

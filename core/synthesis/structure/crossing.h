@@ -65,7 +65,10 @@ rc_crossing rc_crossing_coarser(rc_crossing line, int exponent);
  * level. */
 void rc_crossings_keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
                                 int *count);
+/* Strongest first. */
+void rc_crossings_sort(rc_crossing *lines, int count);
 void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count);
+void rc_crossings_keep_sure(rc_crossing lines[RC_MOST_LINES], int *count);
 void rc_crossings_drop_faint(rc_crossing *lines, int *count);
 /* Keeps those that have nearly all of the hole on one side. flags: of the same level. */
 void rc_crossings_keep_corners(const rc_mask *flags, rc_crossing lines[RC_MOST_LINES], int *count);

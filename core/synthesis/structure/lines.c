@@ -206,14 +206,6 @@ recede_status rc_lines_at(rc_context *context, const rc_seen *seen, bool faint,
   return RECEDE_OK;
 }
 
-static void sort_by_strength(rc_crossing *lines, int count) {
-  for (int i = 1; i < count; i++)
-    for (int k = i; k > 0 && lines[k].strength > lines[k - 1].strength; k--) {
-      rc_crossing weaker = lines[k - 1];
-      lines[k - 1] = lines[k], lines[k] = weaker;
-    }
-}
-
 /* Where hardly anything is as strong, a line that others cross beside the hole: they are noise to
  * it, and make it faint or, where no other is found, hide it. */
 static recede_status find_crossed(rc_context *context, rc_seen *seen,
@@ -234,7 +226,7 @@ static recede_status find_crossed(rc_context *context, rc_seen *seen,
     if (stands_out || !hidden) lines[kept++] = *c;
   }
   *count = kept;
-  sort_by_strength(lines, kept);
+  rc_crossings_sort(lines, kept);
   seen->without_crossings = false;
   return RECEDE_OK;
 }
