@@ -11,9 +11,10 @@ typedef struct rc_image {
 } rc_image;
 
 /* What a pixel is. TARGET: to be filled. KNOWN: has a value that must be continued. SOURCE: known,
- * and may be copied from. ALLOWED: was a source at first, where that is asked for later. 0: nothing
- * there (transparent, not finite, beyond the horizon). */
-enum { RC_TARGET = 1, RC_KNOWN = 2, RC_SOURCE = 4, RC_ALLOWED = 8 };
+ * and may be copied from. ALLOWED: was a source at first, where that is asked for later. TAKEN: is
+ * none while something is filled. 0: nothing there (transparent, not finite, beyond the horizon).
+ */
+enum { RC_TARGET = 1, RC_KNOWN = 2, RC_SOURCE = 4, RC_ALLOWED = 8, RC_TAKEN = 16 };
 
 typedef struct rc_mask {
   int width, height;

@@ -127,15 +127,18 @@ static recede_status choose_surface(rc_context *context, const rc_problem *probl
   return RECEDE_OK;
 }
 
-/* Not those of dashes. */
-static recede_status add_branches(rc_context *context, const rc_dash_rows *dashes, int from,
-                                  rc_descent *e) {
-  int before = e->line_count, added;
-  RC_TRY(rc_branches_add(context, &e->images[from], &e->flags[from], from, &e->chart, e->lines,
-                         &e->line_count));
-  added = e->line_count - before;
+static void drop_new_dashes(const rc_dash_rows *dashes, int before, rc_descent *e) {
+  int added = e->line_count - before;
   rc_dash_rows_drop_lines(dashes, e->lines + before, &added);
   e->line_count = before + added;
+}
+
+static recede_status add_branches(rc_context *context, const rc_dash_rows *dashes, int from,
+                                  rc_descent *e) {
+  int before = e->line_count;
+  RC_TRY(rc_branches_add(context, &e->images[from], &e->flags[from], from, &e->chart, e->lines,
+                         &e->line_count));
+  drop_new_dashes(dashes, before, e);
   return RECEDE_OK;
 }
 
@@ -151,17 +154,17 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
   for (int n = from; n < e->level_count && n <= from + 1 && !e->line_count; n++)
     RC_TRY(rc_lines_find(context, &e->images[n], &e->flags[n], n, n > from, &e->chart,
                          e->due && !e->of_all.row ? by : NULL, e->lines, &e->line_count));
+  rc_dash_rows_drop_lines(dashes, e->lines, &e->line_count);
+  int before = e->line_count;
   RC_TRY(rc_leaving_add(context, &e->images[from], &e->flags[from], from, &e->chart, e->lines,
                         &e->line_count));
-  rc_dash_rows_drop_lines(dashes, e->lines, &e->line_count);
+  drop_new_dashes(dashes, before, e);
+  if (e->line_count > before) rc_crossings_keep_sure(e->lines, &e->line_count); /* chance is weak */
   /* A rail does not come again where its sleepers do. */
   for (int i = 0; i < e->line_count; i++) e->due = e->due && !rc_crossing_is_lone(&e->lines[i]);
   /* Where there are dashes it is they that repeat, not what the lines lie on. */
   RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, !dashes->count,
                        e->lines, &e->line_count, &e->rails));
-  /* Markings come in by themselves, and what lies beside them may have edges of its own. */
-  for (int i = 0; i < e->line_count; i++)
-    if (rc_crossing_is_marking(&e->lines[i])) e->rails = (rc_rails){0};
   if (e->params->engine_boundary && !e->due)
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
                             &e->line_count, &e->rails, &e->sides));
@@ -367,11 +370,9 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   /* After all that looks at what may be copied: a dash beside the hole says how much may stand out
    * there. */
-  for (int n = 0; n < e.level_count; n++) {
-    rc_chart chart = rc_chart_coarser(e.chart, n);
-    rc_dash_rows_take(&dashes, n, &e.flags[n]);
-    rc_lines_take(e.lines, e.line_count, n, &chart, &e.flags[n]);
-  }
+  for (int n = 0; n < e.level_count; n++) rc_dash_rows_take(&dashes, n, &e.flags[n]);
+  RC_TRY(rc_lines_take(context, e.lines, e.line_count, &e.chart, e.flags, e.level_count,
+                       &e.lines_taken));
   /* Where there are two sides no tracks are looked for. */
   if (params->engine_boundary && !e.due && !rc_runs(&e.rails))
     rc_boundary_of_band(&e.chart, e.lines, e.line_count, &e.sides);
@@ -387,6 +388,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(rc_stage(context, "detail", .93, .97));
   if (params->engine_detail) RC_TRY(rc_match_detail(context, &finest, filled));
   count_shortfall(context, &e, &finest, shortfall);
+  rc_lines_give_back(&problem->flags);
   const uint8_t which = restored ? RC_TARGET | RC_KNOWN : RC_TARGET;
   RC_TRY(rc_tracks_apply(context, &tracks, &e.chart, 0, &problem->flags, which, 1, filled));
   return rc_tone_apply(context, &tone, &problem->flags, which, 1, filled);

@@ -25,7 +25,7 @@
 /* The plainer what a sure line crosses, the more it costs: a marking on asphalt 2 to 2.7 times as
  * much. */
 #define FAVOUR_OF_SURE_LINES 4.
-/* To what leads out of the picture, and is seen at one side only, but stands alone there: 5.3. */
+/* What leads out of the picture is seen at one side only, but stands alone there: 5.3. */
 #define FAVOUR_OF_LEAVING_LINES 10.
 /* A lattice costs tiles and old roofs .7 to 1.1 of what any copies do, stones that only lie in rows
  * .6 to 1.4, roof tiles that are all alike 1.6 and more: they keep in order by themselves. */
@@ -237,11 +237,12 @@ static double favour_of(const rc_crossing *line) {
 static recede_status try_lines(rc_context *context, rc_descent *e, const starts *s, rc_pace *p,
                                rc_level *level, rc_workspace *scratch, double misfit) {
   rc_trial best;
-  double own;
+  double own, favour = 0;
   RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(rc_lines_lock(context, e->lines, e->line_count, e->level_count - 1, level));
   RC_TRY(try_starts(context, e, s, p, level, scratch, &best, &own));
-  e->continue_lines = own < favour_of(&e->lines[0]) * misfit;
+  for (int i = 0; i < e->line_count; i++) favour = fmax(favour, favour_of(&e->lines[i]));
+  e->continue_lines = e->lines_taken || own < favour * misfit;
   if (!e->continue_lines) RC_FREE(context, &level->locked);
   return RECEDE_OK;
 }
@@ -311,7 +312,7 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   double misfit;
   rc_trial best;
   /* What stands alone comes again in no lattice. */
-  bool lone = e->line_count && rc_crossing_is_lone(&e->lines[0]);
+  bool lone = e->lines_taken || (e->line_count && rc_crossing_is_lone(&e->lines[0]));
   bool regular = e->params->engine_regular && e->params->surface != RECEDE_SURFACE_RAISED && !lone;
   bool told = e->due && e->of_all.regular; /* by more than joints */
   bool joints = e->params->engine_joints && !told && !rc_runs(&e->rails);

@@ -33,6 +33,7 @@ typedef struct rc_descent {
   rc_sides sides;           /* of the finest level */
   bool take_beside; /* what is too far away for a level's patches is taken from beside the hole */
   /* Starts that kept to them fitted well enough. */
+  bool lines_taken; /* from the sources: they must be continued */
   bool on_rails, on_lattice, by_periods, continue_lines;
   int cut_level;       /* the coarsest where seams are led by cuts; level_count: nowhere */
   uint8_t *rest;       /* of each pixel; out: 1 where it only continues what lies beside it */

@@ -27,7 +27,7 @@ static bool value_at(const view *v, int x, int y, int wanted, float *value) {
 }
 
 static bool outside(const void *user, int x, int y, float *value) {
-  return value_at(user, x, y, RC_SOURCE, value);
+  return value_at(user, x, y, RC_SOURCE | RC_ALLOWED, value);
 }
 
 static bool everywhere(const void *user, int x, int y, float *value) {

@@ -16,6 +16,12 @@
  * way, for it may bend a little. */
 #define TAKEN_BESIDE_PX 3.f
 #define TAKEN_WIDENS .02f
+/* Of the coarsest level's sources no more than this part: in a narrow source all may lie along it.
+ */
+#define MOST_TAKEN .25
+/* In place of a piece's own source another one's is no larger or smaller than this. */
+#define MOST_ENLARGED 3.f
+#define MOST_SHRUNK 6.f
 
 /* Nearly all that a sample counts lies so near, in px of the size that is wanted. */
 #define SAMPLED_PX 1
@@ -52,10 +58,11 @@ static rc_copy copy_of_piece(const track *t, int piece, int from) {
                        c->from_x[from] - chart->x0, c->from_y[from] - chart->y0);
 }
 
-static bool may_be_taken(const track *t, rc_copy copy, int x, int y) {
+static bool may_be_taken(const track *t, rc_copy copy, bool own, int x, int y) {
   const rc_level *level = t->level;
   size_t source;
   rc_place place = rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
+  if (!own && !(place.ratio > 1 / MOST_ENLARGED && place.ratio < MOST_SHRUNK)) return false;
   return rc_place_at(level, &place, &source) &&
          level->flags[source] & (t->sure ? RC_ALLOWED : RC_SOURCE) &&
          !(t->sure && t->finest && !may_be_laid(level, &place));
@@ -69,7 +76,7 @@ static bool choose_copy(const track *t, int piece, int x, int y, rc_copy *copy) 
     int from = piece + (k % 2 ? (k + 1) / 2 : -(k / 2));
     if (from < 0 || from >= t->line.pieces) continue;
     *copy = copy_of_piece(t, piece, from);
-    if (may_be_taken(t, *copy, x, y)) return true;
+    if (may_be_taken(t, *copy, from == piece, x, y)) return true;
   }
   return false;
 }
@@ -100,29 +107,62 @@ static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
     }
 }
 
-static void take_line(const rc_crossing *line, int exponent, const rc_chart *chart,
-                      const rc_mask *flags) {
-  float unit = (float)(1 << exponent);
-  rc_crossing c = rc_crossing_coarser(*line, exponent);
-  float length = rc_crossing_length(&c), ux = (c.bx - c.ax) / length, uy = (c.by - c.ay) / length;
-  for (int y = 0; y < flags->height; y++)
-    for (int x = 0; x < flags->width; x++) {
-      uint8_t *flag = rc_flag(flags, x, y);
-      float px = (float)x, py = (float)y, w = rc_chart_w(chart, px, py);
-      float along = (px - c.ax) * ux + (py - c.ay) * uy;
-      float beyond = along < 0 && !line->ends_inside ? -along : along - length;
-      if (!(*flag & RC_SOURCE) || !(w > 0) || beyond < 0) continue;
-      float reach = c.reach_px[rc_crossing_is_right(&c, px, py)] + TAKEN_WIDENS * beyond;
-      if (rc_crossing_distance(&c, px, py) <= reach * w + TAKEN_BESIDE_PX / unit + .5f)
-        *flag &= (uint8_t)~RC_SOURCE;
-    }
+/* A marking's run outside the hole, at one level. */
+static bool is_in_run(const rc_crossing *c, float unit, const rc_chart *chart, int x, int y) {
+  float px = (float)x, py = (float)y, w = rc_chart_w(chart, px, py);
+  float length = rc_crossing_length(c);
+  float along = ((px - c->ax) * (c->bx - c->ax) + (py - c->ay) * (c->by - c->ay)) / length;
+  float beyond = along < 0 ? -along : along - length;
+  if (!(w > 0) || beyond < 0) return false;
+  float reach_px = c->reach_px[rc_crossing_is_right(c, px, py)] * w;
+  return rc_crossing_distance(c, px, py) <=
+         reach_px + TAKEN_WIDENS * beyond + TAKEN_BESIDE_PX / unit + .5f;
 }
 
-void rc_lines_take(const rc_crossing *lines, int count, int exponent, const rc_chart *chart,
-                   const rc_mask *flags) {
-  for (int i = 0; i < count; i++)
-    if (rc_crossing_is_marking(&lines[i]) && lines[i].reach_px[0] + lines[i].reach_px[1] > 0)
-      take_line(&lines[i], exponent, chart, flags);
+/* taken: of so many sources; may be NULL, and then they are taken. */
+static recede_status take_line(rc_context *context, const rc_crossing *line, int exponent,
+                               const rc_chart *chart, const rc_mask *flags, size_t *taken,
+                               size_t *sources) {
+  float unit = (float)(1 << exponent);
+  rc_crossing c = rc_crossing_coarser(*line, exponent);
+  rc_chart here = rc_chart_coarser(*chart, exponent);
+  for (int y = 0; y < flags->height; y++) {
+    RC_TRY(rc_poll(context));
+    for (int x = 0; x < flags->width; x++) {
+      uint8_t *flag = rc_flag(flags, x, y);
+      if (!(*flag & RC_SOURCE)) continue;
+      bool in = is_in_run(&c, unit, &here, x, y);
+      if (taken)
+        *taken += in, ++*sources;
+      else if (in)
+        *flag = (uint8_t)((*flag & ~RC_SOURCE) | RC_TAKEN);
+    }
+  }
+  return RECEDE_OK;
+}
+
+recede_status rc_lines_take(rc_context *context, const rc_crossing *lines, int count,
+                            const rc_chart *chart, const rc_mask *flags, int levels, bool *any) {
+  int last = levels - 1;
+  *any = false;
+  for (int i = 0; i < count; i++) {
+    size_t taken = 0, sources = 0;
+    if (!rc_crossing_is_marking(&lines[i]) || !(lines[i].reach_px[0] + lines[i].reach_px[1] > 0))
+      continue;
+    RC_TRY(take_line(context, &lines[i], last, chart, &flags[last], &taken, &sources));
+    if ((double)taken > MOST_TAKEN * (double)sources) continue;
+    *any = true;
+    for (int n = 0; n < levels; n++)
+      RC_TRY(take_line(context, &lines[i], n, chart, &flags[n], NULL, NULL));
+  }
+  return RECEDE_OK;
+}
+
+void rc_lines_give_back(const rc_mask *flags) {
+  size_t pixels = (size_t)flags->width * (size_t)flags->height;
+  for (size_t i = 0; i < pixels; i++)
+    if (flags->data[i] & RC_TAKEN)
+      flags->data[i] = (uint8_t)((flags->data[i] & ~RC_TAKEN) | RC_SOURCE);
 }
 
 recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int count, int exponent,

@@ -10,11 +10,13 @@
  * search leave it alone. */
 recede_status rc_lines_lock(rc_context *context, const rc_crossing *lines, int count, int exponent,
                             rc_level *level);
-/* A marking comes into the hole by its own pieces only: takes RC_SOURCE from
- * where it goes on to both sides. chart and flags: of a level 2^exponent times coarser than the
- * finest, of which the lines are. */
-void rc_lines_take(const rc_crossing *lines, int count, int exponent, const rc_chart *chart,
-                   const rc_mask *flags);
+/* A marking of which the whole width is told comes into the hole by its own pieces only: where it
+ * goes on beside the hole RC_SOURCE becomes RC_TAKEN at all levels, if that is no large part of
+ * them. chart: of the finest. any: some was taken. */
+recede_status rc_lines_take(rc_context *context, const rc_crossing *lines, int count,
+                            const rc_chart *chart, const rc_mask *flags, int levels, bool *any);
+/* For what is filled later, from the same flags. */
+void rc_lines_give_back(const rc_mask *flags);
 /* Sets the finest level's field, and laid, where rows cross the hole, when all else is done: what
  * is copied around them has no dashes. */
 recede_status rc_dash_rows_lay(rc_context *context, const rc_dash_rows *rows, rc_level *finest);

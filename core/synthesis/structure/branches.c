@@ -77,6 +77,18 @@ static bool is_continued(const work *w, const loose *end) {
   return false;
 }
 
+/* Whether it is part of a broad line that leaves, too. */
+static bool lies_in_another(const work *w, const loose *end) {
+  for (int i = 0; i < w->line_count; i++) {
+    const rc_crossing *c = &w->lines[i];
+    float reach_px = c->reach_px[rc_crossing_is_right(c, end->x, end->y)];
+    if (c->leaves && rc_crossing_distance(c, end->x, end->y) <=
+                         RC_PROFILE_HALF + reach_px * rc_chart_w(w->chart, end->x, end->y))
+      return true;
+  }
+  return false;
+}
+
 /* Strongest first; of those beside one another, as of a line's two edges, the stronger stays. */
 static void keep(work *w, loose end) {
   int at = 0;
@@ -101,7 +113,7 @@ static void collect(const rc_ends *ends, work *w) {
     loose end = refine(ends, i);
     rc_crossing line = {end.x, end.y, end.x + end.out[0], end.y + end.out[1],
                         .strength = end.strength};
-    if (!(end.strength > 0) || is_continued(w, &end)) continue;
+    if (!(end.strength > 0) || is_continued(w, &end) || lies_in_another(w, &end)) continue;
     end.as_strong = rc_ends_as_strong(ends, &line);
     if (end.as_strong <= RC_MOST_AS_STRONG) keep(w, end);
   }
@@ -249,18 +261,6 @@ recede_status rc_branches_add(rc_context *context, const rc_image *image, const 
   return rc_poll(context);
 }
 
-/* Whether it is part of a broad line that leaves, too. */
-static bool lies_in_another(const work *w, const loose *end) {
-  for (int i = 0; i < w->line_count; i++) {
-    const rc_crossing *c = &w->lines[i];
-    float reach_px = c->reach_px[rc_crossing_is_right(c, end->x, end->y)];
-    if (c->leaves && rc_crossing_distance(c, end->x, end->y) <=
-                         RC_PROFILE_HALF + reach_px * rc_chart_w(w->chart, end->x, end->y))
-      return true;
-  }
-  return false;
-}
-
 /* How far inwards an end leaves the hole where the picture ends, or nearly so; else infinite. */
 static float way_out(const rc_mask *flags, const loose *end) {
   int last = 0;
@@ -282,6 +282,10 @@ recede_status rc_leaving_add(rc_context *context, const rc_image *image, const r
   rc_seen seen;
   rc_ends ends;
   int before = *count;
+  rc_box hole = rc_box_of(mask, RC_TARGET);
+  bool is_near = hole.x0 <= STRIP_PX || hole.y0 <= STRIP_PX || hole.x1 + STRIP_PX >= mask->width ||
+                 hole.y1 + STRIP_PX >= mask->height;
+  if (!is_near || *count == RC_MOST_LINES) return RECEDE_OK;
   const float *axis = rc_brightness_axis(image);
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_see(context, image, mask, axis, &seen));
@@ -305,15 +309,13 @@ recede_status rc_leaving_add(rc_context *context, const rc_image *image, const r
                      .ends_inside = true,
                      .leaves = true};
     /* Beside it, too, the picture ends: half as far is looked. */
-    c.alone = rc_end_stands_alone(&seen, &here, &c, w.reach_px / 2);
-    if (c.alone && rc_follow(&seen, &here, rc_windows_of(&c, false), &c) && rc_crossing_is_lone(&c))
+    c.alone =
+        rc_chart_w(&here, c.ax, c.ay) > 0 && rc_end_stands_alone(&seen, &here, &c, w.reach_px / 2);
+    if (c.alone && rc_follow(&seen, &here, rc_windows_of(&c, false), &c) &&
+        rc_crossing_is_lone(&c) && rc_chart_w(&here, c.ax, c.ay) > 0)
       lines[w.line_count++] = c;
   }
   give_back(&w, exponent, before, axis, count);
-  if (*count > before) {
-    rc_crossings_keep_sure(lines, count);
-    rc_crossings_sort(lines, *count);
-  }
   rc_release(context, mark);
   return rc_poll(context);
 }

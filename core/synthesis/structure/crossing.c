@@ -87,6 +87,7 @@ void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count) {
 
 void rc_crossings_keep_sure(rc_crossing lines[RC_MOST_LINES], int *count) {
   keep(rc_crossing_is_sure, lines, count);
+  rc_crossings_sort(lines, *count);
 }
 
 void rc_crossings_drop_faint(rc_crossing *lines, int *count) {

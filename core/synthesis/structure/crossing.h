@@ -6,7 +6,7 @@
 #include "image/image.h"
 #include "synthesis/copy.h"
 
-#define RC_MOST_LINES 8 /* parallel ones */
+#define RC_MOST_LINES 8 /* parallel ones, and what leaves the picture */
 #define RC_ALL_LINES 24 /* and all that cross them, or end there */
 #define RC_MOST_PIECES 24
 
@@ -30,7 +30,7 @@ typedef struct rc_crossing {
   bool alone;       /* hardly any parallel to it looks the same */
   bool faint;       /* it is known only by what tells two textures apart */
   bool ends_inside; /* at a */
-  bool leaves;      /* that is at the picture's end, or so near that no run of it is seen there */
+  bool leaves;      /* and that is at the picture's end, or too near to see a run of it behind */
   bool band;        /* it is wide, and hardly anything at the hole's border is as strong */
   float axis[3];    /* the weights of colours it was seen by */
   /* How far it reaches to its left and right, px where w = 1; 0 where that is not told. */
@@ -68,6 +68,7 @@ void rc_crossings_keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST
 /* Strongest first. */
 void rc_crossings_sort(rc_crossing *lines, int count);
 void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count);
+/* Strongest first. */
 void rc_crossings_keep_sure(rc_crossing lines[RC_MOST_LINES], int *count);
 void rc_crossings_drop_faint(rc_crossing *lines, int *count);
 /* Keeps those that have nearly all of the hole on one side. flags: of the same level. */

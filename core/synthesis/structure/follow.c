@@ -57,8 +57,8 @@
 /* What is magnified is blurred: of all the ways to take a line that one is best whose sources keep
  * most of its contrast, less so much for each octave that they are magnified by in the mean. */
 #define PRICE_OF_MAGNIFICATION .2f
-/* Sources may be this much smaller than what they fill, and more of a marking, that without there
- * would be none; how much larger depends on the way. */
+/* Sources may be this much smaller than what they fill, and more of a marking, for which there may
+ * be no others; how much larger depends on the way. */
 #define MOST_MAGNIFIED 1.7f
 #define MOST_MAGNIFIED_MARKING 3.f
 /* Each way to follow it. Of a line that leads to the viewer sources are larger and
@@ -312,7 +312,7 @@ static float octaves_magnified(const frame *f) {
   return sum / (float)c->pieces;
 }
 
-/* worth: what is kept, less the price. */
+/* worth: what is kept, less the price; and more of a sure one than of any that is not. */
 static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int windows,
                            const struct way *way, rc_crossing *line, float *worth) {
   rc_profile own_a, own_b;
@@ -330,9 +330,12 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int wi
   for (; f.farther_px <= FARTHEST_PX && !found; f.farther_px += FARTHER_PX)
     for (int i = leaves ? FROM_B : 0; i < (leaves ? FROM_B + 1 : way->splits); i++) {
       float kept = follow_both(&f, splits[i], leaves ? &own_b : &own_a, &own_b);
-      float here = kept - PRICE_OF_MAGNIFICATION * octaves_magnified(&f);
-      if (kept <= LEAST_KEPT || (found && here <= *worth)) continue;
-      *worth = here, best = *line, best.kept = kept, found = true;
+      if (kept <= LEAST_KEPT) continue;
+      rc_crossing c = *line;
+      c.kept = kept;
+      float here = kept - PRICE_OF_MAGNIFICATION * octaves_magnified(&f) + rc_crossing_is_sure(&c);
+      if (found && here <= *worth) continue;
+      *worth = here, best = c, found = true;
     }
   if (!found) return false;
   if (!leaves) prefer_clean(&f, way, &own_a, &own_b, &best);

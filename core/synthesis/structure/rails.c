@@ -192,6 +192,13 @@ static bool keep_lines_straight(const rc_chart *chart, const rc_crossing *lines,
   return least <= MOST_STEP_PX * px && most_of_clear <= MOST_STEP_OF_CLEAR_PX * px;
 }
 
+/* Markings come in by themselves, and what lies beside them may have edges of its own. */
+static bool has_marking(const rc_crossing *lines, int count) {
+  for (int i = 0; i < count; i++)
+    if (rc_crossing_is_marking(&lines[i])) return true;
+  return false;
+}
+
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                             int levels, const rc_chart *chart, bool may_repeat, rc_crossing *lines,
                             int *count, rc_rails *rails) {
@@ -216,7 +223,8 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
     rc_rails r = sharpened(m, along, reach_px / (float)(1 << coarse), COARSE_TURN);
     rc_moves_set(&images[fine], &masks[fine], rc_chart_coarser(*chart, fine), false, NULL, m);
     r = sharpened(m, r, reach_px / (float)(1 << fine), FINE_TURN);
-    if (keep_lines_straight(chart, lines, *count, coarse, r)) *rails = r;
+    if (!has_marking(lines, *count) && keep_lines_straight(chart, lines, *count, coarse, r))
+      *rails = r;
   }
   if (*count && !rc_runs(rails) && may_repeat) {
     bool repeats;
