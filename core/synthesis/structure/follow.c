@@ -57,10 +57,10 @@
 /* What is magnified is blurred: of all the ways to take a line that one is best whose sources keep
  * most of its contrast, less so much for each octave that they are magnified by in the mean. */
 #define PRICE_OF_MAGNIFICATION .2f
-/* Sources may be this much smaller than what they fill, and more of a marking, for which there may
- * be no others; how much larger depends on the way. */
+/* Sources may be this much smaller than what they fill, and more of what leaves the picture, for
+ * there are no others; how much larger depends on the way. */
 #define MOST_MAGNIFIED 1.7f
-#define MOST_MAGNIFIED_MARKING 3.f
+#define MOST_MAGNIFIED_LEAVING 3.f
 /* Each way to follow it. Of a line that leads to the viewer sources are larger and
  * its profile wider, and its pieces short, for far away they are long in the plane. But short ones
  * may wobble, and thin lines far away are as wide as a blur is. */
@@ -102,9 +102,7 @@ static frame frame_of(const rc_seen *picture, const rc_chart *chart, int windows
              .chart = chart,
              .line = line,
              .most_reduced = way->most_reduced,
-             .most_magnified = line->alone && line->strength >= RC_CLEAR_STRENGTH
-                                   ? MOST_MAGNIFIED_MARKING
-                                   : MOST_MAGNIFIED,
+             .most_magnified = line->leaves ? MOST_MAGNIFIED_LEAVING : MOST_MAGNIFIED,
              .windows = windows};
   if (way->widens) f.ruler.chart = chart;
   line->pieces = way->pieces;
