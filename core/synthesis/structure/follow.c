@@ -22,6 +22,7 @@
 #define GOES_ON_WINDOWS 3
 #define GOES_ON_WINDOWS_OF_STRONGEST 2
 #define GOES_ON_WINDOWS_SEEN_COARSER 1
+#define GOES_ON_WINDOWS_LEAVING 4 /* a dash is shorter */
 #define GOES_ON_PX 24
 #define LEAST_GOING_ON .75f
 /* Where a sure one is less than half as wide as beside the hole, it need not look the same. */
@@ -164,7 +165,7 @@ static float as_wide(const frame *f, float x, float y, float outwards) {
 /* Where the picture or the source ends, so may the line. */
 static bool goes_on(const frame *f, float outwards, float x, float y, const rc_profile *own) {
   float square = rc_profile_dot(own, own);
-  bool sure = f->line->strength >= RC_SURE_STRENGTH;
+  bool sure = f->line->strength >= RC_SURE_STRENGTH && !f->line->leaves;
   for (int k = 0; k < f->windows; k++) {
     float most = -1, from = RC_PROFILE_FROM_PX + GOES_ON_PX * (float)k;
     bool known = false;
@@ -345,6 +346,7 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int wi
 }
 
 int rc_windows_of(const rc_crossing *line, bool seen_coarser) {
+  if (line->leaves) return GOES_ON_WINDOWS_LEAVING;
   if (line->as_strong > RC_HARDLY_AS_STRONG) return GOES_ON_WINDOWS;
   return seen_coarser ? GOES_ON_WINDOWS_SEEN_COARSER : GOES_ON_WINDOWS_OF_STRONGEST;
 }
