@@ -25,8 +25,6 @@
 /* The plainer what a sure line crosses, the more it costs: a marking on asphalt 2 to 2.7 times as
  * much. */
 #define FAVOUR_OF_SURE_LINES 4.
-/* What leads out of the picture is seen at one side only, but stands alone there: 5.3. */
-#define FAVOUR_OF_LEAVING_LINES 10.
 /* A lattice costs tiles and old roofs .7 to 1.1 of what any copies do, stones that only lie in rows
  * .6 to 1.4, roof tiles that are all alike 1.6 and more: they keep in order by themselves. */
 #define FAVOUR_OF_LATTICE 1.3
@@ -228,7 +226,6 @@ static recede_status try_rails(rc_context *context, rc_descent *e, int first, in
 }
 
 static double favour_of(const rc_crossing *line) {
-  if (line->leaves) return FAVOUR_OF_LEAVING_LINES;
   if (rc_crossing_is_sure(line)) return FAVOUR_OF_SURE_LINES;
   return line->strength >= RC_CLEAR_STRENGTH ? FAVOUR_OF_CLEAR_LINES : FAVOUR_OF_LINES;
 }

@@ -15,8 +15,7 @@ recede_status rc_branches_add(rc_context *context, const rc_image *image, const 
                               int *count);
 /* Adds clear ones that stand alone and leave the picture where the hole does, or behind it, too
  * near to be seen there: markings that lead to the viewer. Of these a is where they leave the
- * hole. The
- * rest as above. */
+ * hole. The rest as above. */
 recede_status rc_leaving_add(rc_context *context, const rc_image *image, const rc_mask *mask,
                              int exponent, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
                              int *count);
