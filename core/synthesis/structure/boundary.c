@@ -276,6 +276,20 @@ static bool crosses_a_lone_line(const rc_chart *chart, rc_copy direction, const 
   return false;
 }
 
+static bool is_the_same(const rc_crossing *line, float apart_px, const rc_crossing *other) {
+  return rc_crossing_distance(line, other->ax, other->ay) < apart_px &&
+         rc_crossing_distance(line, other->bx, other->by) < apart_px;
+}
+
+/* As the edge of a beam between boards and water does. Boards' joints are not as clear. */
+static bool lies_along_a_clear_line(const rc_crossing *line, float apart_px,
+                                    const rc_crossing *lines, int count) {
+  for (int i = 0; i < count; i++)
+    if (lines[i].strength >= RC_CLEAR_STRENGTH && is_the_same(line, apart_px, &lines[i]))
+      return true;
+  return false;
+}
+
 recede_status rc_boundary_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                                int levels, int from, const rc_chart *chart,
                                rc_crossing lines[RC_MOST_LINES], int *count, rc_rails *rails,
@@ -290,18 +304,19 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
                 &found, &sought, &band));
   if (!found && band.band && !*count && !rc_runs(rails)) lines[(*count)++] = band;
   rc_copy direction = found ? rc_crossing_direction(chart, &line) : (rc_copy){0, 0, 0};
-  if (!found || rc_parallel_in_plane(direction, (rc_copy){rails->a, rails->b, 0})) return RECEDE_OK;
+  if (!found) return RECEDE_OK;
+  bool as_rails = rc_parallel_in_plane(direction, (rc_copy){rails->a, rails->b, 0});
+  if (as_rails && !lies_along_a_clear_line(&line, apart_px, lines, *count)) return RECEDE_OK;
   const rc_boundary *between = &sought.boundaries[0];
   RC_TRY(rc_runs_on_both_sides(context, images, masks, levels, chart, rails, between, &boards));
-  if (boards) return RECEDE_OK; /* light and dark boards' ends in a row */
+  if (boards) return RECEDE_OK; /* light and dark boards, or their ends in a row */
   if (crosses_a_lone_line(chart, direction, lines, *count)) return RECEDE_OK;
   *rails = (rc_rails){0};
   *sides = sought;
   for (int i = 0; i < *count; i++) {
     bool repeats = false;
     if (!rc_parallel_in_plane(direction, rc_crossing_direction(chart, &lines[i]))) continue;
-    bool same = rc_crossing_distance(&line, lines[i].ax, lines[i].ay) < apart_px &&
-                rc_crossing_distance(&line, lines[i].bx, lines[i].by) < apart_px;
+    bool same = is_the_same(&line, apart_px, &lines[i]);
     if (!same && !lines[i].alone)
       RC_TRY(rc_repeats_beside(context, images, masks, levels, chart, &lines[i], between,
                                lines[i].ax, lines[i].ay, &repeats));

@@ -81,8 +81,14 @@ void rc_crossings_sort(rc_crossing *lines, int count) {
     }
 }
 
+static bool may_lead_alone(const rc_crossing *line) {
+  return line->alone && line->strength >= LEAST_LEADING_STRENGTH;
+}
+
 void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count) {
-  keep(rc_crossing_is_lone, lines, count);
+  bool any = false;
+  for (int i = 0; i < *count; i++) any = any || rc_crossing_is_lone(&lines[i]);
+  keep(any ? may_lead_alone : rc_crossing_is_lone, lines, count);
 }
 
 void rc_crossings_keep_sure(rc_crossing lines[RC_MOST_LINES], int *count) {

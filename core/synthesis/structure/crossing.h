@@ -67,6 +67,7 @@ void rc_crossings_keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST
                                 int *count);
 /* Strongest first. */
 void rc_crossings_sort(rc_crossing *lines, int count);
+/* And, beside one, the others that stand alone: of a beam both edges do. */
 void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count);
 /* Strongest first. */
 void rc_crossings_keep_sure(rc_crossing lines[RC_MOST_LINES], int *count);

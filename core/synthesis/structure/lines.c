@@ -181,6 +181,29 @@ static recede_status follow(rc_context *context, const rc_seen *seen, const rc_c
   return RECEDE_OK;
 }
 
+/* Of the leading direction, or, where none of that goes on, of the next. */
+static recede_status follow_parallel(rc_context *context, const rc_seen *seen,
+                                     const rc_chart *chart, int exponent,
+                                     rc_crossing lines[RC_MOST_LINES], int *count) {
+  rc_crossing left[RC_MOST_LINES];
+  int left_count = *count;
+  memcpy(left, lines, (size_t)*count * sizeof *left);
+  do {
+    int others = 0;
+    memcpy(lines, left, (size_t)left_count * sizeof *left);
+    *count = left_count;
+    rc_crossings_keep_parallel(chart, lines, count);
+    if (!*count) break;
+    rc_copy direction = rc_crossing_direction(chart, &lines[0]);
+    for (int i = 0; i < left_count; i++)
+      if (!rc_parallel_in_plane(direction, rc_crossing_direction(chart, &left[i])))
+        left[others++] = left[i];
+    left_count = others;
+    RC_TRY(follow(context, seen, chart, exponent, lines, count));
+  } while (!*count);
+  return RECEDE_OK;
+}
+
 const float *rc_brightness_axis(const rc_image *image) {
   static const float grey[3] = {1, 0, 0}, colours[3] = {.3f, .59f, .11f};
   return image->channels == 1 ? grey : colours;
@@ -263,8 +286,7 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
         (rc_copy){periods[k].a / (float)(1 << exponent), periods[k].b / (float)(1 << exponent), 0};
   for (int i = 0; i < *count; i++)
     lines[i].alone = rc_stands_alone(&seen, &here, &lines[i], reach_px, periods ? here_by : NULL);
-  rc_crossings_keep_parallel(&here, lines, count);
-  RC_TRY(follow(context, &seen, &here, exponent, lines, count));
+  RC_TRY(follow_parallel(context, &seen, &here, exponent, lines, count));
   if (*count == 1 && lines->as_strong > RC_MOST_AS_STRONG) *count = 0;
   for (int i = 0; i < *count; i++) memcpy(lines[i].axis, axis, sizeof lines[i].axis);
   rc_release(context, mark);
