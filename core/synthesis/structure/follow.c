@@ -7,6 +7,7 @@
 #include "base/real.h"
 #include "kernels/kernels.h"
 #include "synthesis/structure/reach.h"
+#include "synthesis/structure/straighten.h"
 #include "synthesis/structure/strays.h"
 
 /* A line's own profile is found within so many px of where a straight fit over a longer run puts
@@ -25,13 +26,12 @@
 #define GOES_ON_WINDOWS_LEAVING 4 /* a dash is shorter */
 #define GOES_ON_PX 24
 #define LEAST_GOING_ON .75f
+/* One that is not clear must do so for half as far as it is to be led, at both ends: edges of
+ * stones that are longer than three windows met across a hole, and a bar lay on the beach. */
+#define LEAST_GOING_ON_OF_LENGTH .5f
 /* Where a sure one is less than half as wide as beside the hole, it need not look the same. */
 #define LEAST_AS_WIDE .5f
 #define LEAST_OF_CONTRAST .02f /* of its square: less is another thing's slope */
-/* What is seen at one end only is turned until it lies where the line is so far away, and twice as
- * far and so on. */
-#define STRAIGHT_STEP_PX 24.f
-#define STRAIGHT_STEPS 4
 /* From piece to piece it may bend by so much. */
 #define MOST_BEND_PX 1.f
 /* The part of its contrast that must be left, in the mean over the pieces. Dotted cracks keep .8,
@@ -127,33 +127,6 @@ static bool pin(const frame *f, float outwards, float *x, float *y, rc_profile *
   }
   *x -= f->ruler.uy * moved, *y += f->ruler.ux * moved;
   return rc_profile_mean(&f->ruler, *x, *y, from, outwards, RC_PROFILE_NEAR_PX, own);
-}
-
-/* The correlation of what lies so far out, and so far across, with own; -1: nothing is known. */
-static float likeness_at(const frame *f, float along, float across, const rc_profile *own) {
-  const rc_crossing *c = f->line;
-  rc_profile here;
-  if (!rc_profile_mean(&f->ruler, c->bx - f->ruler.uy * across, c->by + f->ruler.ux * across, along,
-                       1, RC_PROFILE_NEAR_PX, &here))
-    return -1;
-  float square = rc_profile_dot(&here, &here) * rc_profile_dot(own, own);
-  return square > 0 ? rc_profile_dot(&here, own) / sqrtf(square) : -1;
-}
-
-static void straighten(frame *f, const rc_profile *own) {
-  rc_crossing *c = f->line;
-  for (int n = 1; n <= STRAIGHT_STEPS; n++) {
-    float along = STRAIGHT_STEP_PX * (float)n, most = LEAST_GOING_ON, off = NAN;
-    for (float across = -PINNED_WITHIN_PX; across <= PINNED_WITHIN_PX; across += PINNED_STEP_PX) {
-      float likeness = likeness_at(f, along, across, own);
-      if (likeness > most) most = likeness, off = across;
-    }
-    if (isnan(off)) return;
-    float turn = off / (along + RC_PROFILE_NEAR_PX / 2.f);
-    float ux = f->ruler.ux - turn * f->ruler.uy, uy = f->ruler.uy + turn * f->ruler.ux;
-    c->ax = c->bx - f->length * ux, c->ay = c->by - f->length * uy;
-    set_frame(f);
-  }
 }
 
 /* How many times as wide the ground is so far out as at an end. */
@@ -322,7 +295,10 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int wi
       !pin(&f, 1, &line->bx, &line->by, &own_b))
     return false;
   set_frame(&f);
-  if (leaves) straighten(&f, &own_b);
+  if (leaves) {
+    rc_straighten(&f.ruler, &own_b, line);
+    set_frame(&f);
+  }
   if ((!leaves && !goes_on(&f, -1, line->ax, line->ay, &own_a)) ||
       !goes_on(&f, 1, line->bx, line->by, &own_b))
     return false;
@@ -347,8 +323,12 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int wi
 
 int rc_windows_of(const rc_crossing *line, bool seen_coarser) {
   if (line->leaves) return GOES_ON_WINDOWS_LEAVING;
-  if (line->as_strong > RC_HARDLY_AS_STRONG) return GOES_ON_WINDOWS;
-  return seen_coarser ? GOES_ON_WINDOWS_SEEN_COARSER : GOES_ON_WINDOWS_OF_STRONGEST;
+  int least = line->as_strong > RC_HARDLY_AS_STRONG ? GOES_ON_WINDOWS
+              : seen_coarser                        ? GOES_ON_WINDOWS_SEEN_COARSER
+                                                    : GOES_ON_WINDOWS_OF_STRONGEST;
+  int of_length = (int)ceilf(LEAST_GOING_ON_OF_LENGTH * rc_crossing_length(line) / GOES_ON_PX);
+  bool crosses = line->strength < RC_CLEAR_STRENGTH && !line->ends_inside;
+  return crosses && of_length > least ? of_length : least;
 }
 
 bool rc_follow(const rc_seen *picture, const rc_chart *chart, int windows, rc_crossing *line) {
