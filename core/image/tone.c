@@ -70,7 +70,8 @@ static void apply_row(void *user, int y, int thread) {
     for (int i = 0; i < COLUMNS; i++)
       u[i] = unit_x(tone, within(first + i, tone->box.x0, tone->box.x1));
     for (int k = 0; k < tone->channels; k++) {
-      const double *own = tone->terms[k]; /* in basis()'s order; the compiler makes vectors of it */
+      const double *own =
+          tone->terms[k]; /* in the terms' order; the compiler makes vectors of it */
       for (int i = 0; i < COLUMNS; i++)
         trend[i] = own[0] + own[1] * u[i] + own[2] * v + own[3] * (u[i] * u[i]) +
                    own[4] * (u[i] * v) + own[5] * (v * v);

@@ -17,15 +17,16 @@ typedef struct rc_tone {
   int channels;
 } rc_tone;
 
-/* Least squares over the SOURCE pixels of the band, or where it holds none over all, or, where that
- * explains much more, over what neighbouring places differ by, steps left out; of trends that are
- * coloured only what lies along the mean colour. The trend is used where it explains a good part of
- * the variance and of the differences between neighbouring places, as a step between two things
- * does not, and does no harm beside the TARGET pixels, nor to what lies right around them; and, if
- * these lie mostly beyond the sources, of nearly all that differs from place to place. Else, and
- * with drift false, the tone is the sources' mean. */
-void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *band, bool drift,
-                 rc_tone *tone);
+/* Least squares over the SOURCE pixels of the band, or where it holds none over all. Where that
+ * explains a good part of their variance one is fitted to what neighbouring places differ by, too,
+ * steps left out, and taken if it explains more of that. Of trends that are coloured only what lies
+ * along the mean colour stays. The trend is used where it explains some of the differences between
+ * neighbouring places, as a step between two things does not, and does no harm beside the TARGET
+ * pixels, nor to what lies right around them; and, if these lie mostly beyond the sources, where it
+ * explains nearly all that differs from place to place. Else, and with drift false, the tone is the
+ * sources' mean. */
+recede_status rc_tone_fit(rc_context *context, const rc_image *image, const rc_mask *flags,
+                          const rc_band *band, bool drift, rc_tone *tone);
 bool rc_tone_drifts(const rc_tone *tone);
 /* The terms of the quadratic at a pixel, and what a channel is by such terms. */
 void rc_tone_terms(const rc_tone *tone, int x, int y, double terms[RC_TONE_TERMS]);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/cholesky.h"
-#include "base/real.h"
+#include "base/memory.h"
 #include "image/trend.h"
 
 /* Part of the variance that a trend must explain: below, it is lost in the texture. */
@@ -17,12 +17,13 @@
 #define MOST_COLOURED .133
 /* Least squares bend a trend across the step between a dark pier and bright water until it fits
  * neither. One that is fitted to what neighbouring places differ by, steps left out, is taken where
- * it explains so much more of that, and beside the hole no less and so much of it: the pier .04 to
- * .16 more, and .10 to .56; dunes, tea and fields none of both. */
+ * it explains so much more of that, beside the hole more and so much of it, and so much of the
+ * variance: the pier .04 to .16 more, .10 to .56, and .20 to .49; dunes, tea and fields one or none
+ * of these. */
 #define LEAST_BETTER .02
 #define LEAST_BETTER_BESIDE .1
-/* A place counts if it has such a part of the samples of one where all are; and a trend needs so
- * many differences. */
+#define LEAST_EXPLAINED_BETWEEN .1
+/* A place counts if such a part of it are samples; and a trend needs so many differences. */
 #define LEAST_OF_PLACE .25
 #define LEAST_DIFFERENCES 20
 /* Of the weights that leave steps out; six decimals stay as they are after so many. */
@@ -127,7 +128,8 @@ static bool fit_squares(const sums *s, rc_tone *tone) {
 typedef struct differences {
   int count;
   rc_tone_place of[MOST_DIFFERENCES];
-  double left[MOST_DIFFERENCES];
+  double left[MOST_DIFFERENCES], sorted[MOST_DIFFERENCES];
+  rc_tone_places places;
 } differences;
 
 static void add_difference(const rc_tone_place *p, const rc_tone_place *q, double least,
@@ -136,16 +138,17 @@ static void add_difference(const rc_tone_place *p, const rc_tone_place *q, doubl
   d->left[d->count++] = 0;
 }
 
-static void find_differences(const rc_samples *samples, const rc_tone *tone, double count,
-                             differences *d) {
-  rc_tone_places places;
-  double least = LEAST_OF_PLACE * count / (RC_PLACES * RC_PLACES);
+static void find_differences(const rc_samples *samples, const rc_tone *tone, differences *d) {
+  rc_tone_places *places = &d->places;
+  rc_box box = tone->box;
+  double step = rc_sample_step(box), area = (double)(box.x1 - box.x0) * (box.y1 - box.y0);
+  double least = LEAST_OF_PLACE * area / (step * step) / (RC_PLACES * RC_PLACES);
   d->count = 0;
-  rc_places_sum(samples, tone, tone->box, RC_PLACES, &places);
+  rc_places_sum(samples, tone, box, RC_PLACES, places);
   for (int y = 0; y < RC_PLACES; y++)
     for (int x = 0; x < RC_PLACES; x++) {
-      if (x + 1 < RC_PLACES) add_difference(&places.of[y][x], &places.of[y][x + 1], least, d);
-      if (y + 1 < RC_PLACES) add_difference(&places.of[y][x], &places.of[y + 1][x], least, d);
+      if (x + 1 < RC_PLACES) add_difference(&places->of[y][x], &places->of[y][x + 1], least, d);
+      if (y + 1 < RC_PLACES) add_difference(&places->of[y][x], &places->of[y + 1][x], least, d);
     }
 }
 
@@ -176,7 +179,7 @@ static bool fit_weighted(const differences *d, double usual, rc_tone *tone) {
 
 /* Gets what the trend leaves, and of that the median. */
 static double measure_left(const rc_tone *tone, differences *d) {
-  double sorted[MOST_DIFFERENCES];
+  double *sorted = d->sorted;
   for (int n = 0; n < d->count; n++) {
     d->left[n] = 0;
     for (int k = 0; k < tone->channels; k++) {
@@ -190,31 +193,55 @@ static double measure_left(const rc_tone *tone, differences *d) {
 }
 
 /* A trend that steps do not bend. False: too little is known. */
-static bool fit_between_steps(const rc_samples *samples, const sums *s, rc_tone *tone) {
-  differences d;
+static bool fit_between_steps(const rc_samples *samples, const sums *s, differences *d,
+                              rc_tone *tone) {
   double usual = 1;
-  find_differences(samples, tone, s->product[0][0], &d);
-  if (d.count < LEAST_DIFFERENCES) return false;
+  find_differences(samples, tone, d);
+  if (d->count < LEAST_DIFFERENCES) return false;
   for (int round = 0; round < ROUNDS; round++) {
-    if (!fit_weighted(&d, usual, tone)) return false;
-    usual = measure_left(tone, &d);
+    if (!fit_weighted(d, usual, tone)) return false;
+    usual = measure_left(tone, d);
   }
   for (int k = 0; k < tone->channels; k++) set_mean(s, k, tone);
   keep_light(tone, s);
   return true;
 }
 
-static bool is_better(const rc_tone *trend, const rc_tone *other, const rc_trend_view *view) {
+static bool is_better(const rc_tone *trend, const rc_tone *other, const sums *s,
+                      const rc_trend_view *view) {
   double beside = rc_trend_explains(trend, &view->beside);
   return rc_trend_explains(trend, &view->all) >
              rc_trend_explains(other, &view->all) + LEAST_BETTER &&
-         beside >= LEAST_BETTER_BESIDE && beside > rc_trend_explains(other, &view->beside);
+         beside >= LEAST_BETTER_BESIDE && beside > rc_trend_explains(other, &view->beside) &&
+         explained(trend, s) >= LEAST_EXPLAINED_BETWEEN && rc_trend_is_light(trend, view);
 }
 
-void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *band, bool drift,
-                 rc_tone *tone) {
-  rc_samples samples = {image, flags, band};
+/* What is too large for a stack. */
+typedef struct workspace {
   rc_trend_view view;
+  differences differences;
+} workspace;
+
+/* Makes the tone, fitted by least squares, the better one; light false: none of both is. */
+static recede_status choose(rc_context *context, const rc_samples *samples, const sums *s,
+                            rc_tone *tone, bool *light) {
+  rc_tone between = *tone;
+  workspace *w;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, 1, &w));
+  RC_TRY(rc_trend_view_set(context, samples, tone, &w->view));
+  *light = rc_trend_is_light(tone, &w->view);
+  if (fit_between_steps(samples, s, &w->differences, &between) &&
+      is_better(&between, tone, s, &w->view))
+    *tone = between, *light = true;
+  rc_release(context, mark);
+  return rc_poll(context);
+}
+
+recede_status rc_tone_fit(rc_context *context, const rc_image *image, const rc_mask *flags,
+                          const rc_band *band, bool drift, rc_tone *tone) {
+  rc_samples samples = {image, flags, band};
+  bool light = false;
   sums s;
   memset(&s, 0, sizeof s);
   memset(tone, 0, sizeof *tone);
@@ -226,14 +253,11 @@ void rc_tone_fit(const rc_image *image, const rc_mask *flags, const rc_band *ban
     samples.band = NULL;
     gather(&samples, tone, &s);
   }
-  if (!(s.product[0][0] > 0)) return;
-  if (drift && fit_squares(&s, tone) && explained(tone, &s) >= LEAST_EXPLAINED) {
-    rc_tone between = *tone;
-    rc_trend_view_set(&samples, tone, &view);
-    if (fit_between_steps(&samples, &s, &between) && is_better(&between, tone, &view))
-      *tone = between;
-    if (rc_trend_is_light(tone, &view)) return;
-  }
+  if (!(s.product[0][0] > 0)) return RECEDE_OK;
+  if (drift && fit_squares(&s, tone) && explained(tone, &s) >= LEAST_EXPLAINED)
+    RC_TRY(choose(context, &samples, &s, tone, &light));
+  if (light) return RECEDE_OK;
   memset(tone->terms, 0, sizeof tone->terms);
   for (int k = 0; k < tone->channels; k++) tone->terms[k][0] = s.value[k][0] / s.product[0][0];
+  return RECEDE_OK;
 }

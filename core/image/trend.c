@@ -8,7 +8,7 @@
  * places. Where two things meet, a road and its verge, brightness steps, and a trend across the
  * step is wrong nearly everywhere: six such scenes -.24 .. .00, ten photos whose light drifts
  * .03 .. .22. */
-#define LEAST_EXPLAINED .01
+#define LEAST_EXPLAINED_NEARBY .01
 #define PLACES 8
 /* And beside the hole, so much of its longer side away, it must not do this harm: a dark pier
  * between bright water is light to both sides by a trend, but dark by itself. Photos whose light
@@ -18,11 +18,12 @@
 #define BESIDE_OF_HOLE .25
 /* Nor this one to what lies right around the hole, so much of its longer side, from any place there
  * to any other: holes in the dark boards of a pier, which the water's trend does not touch, got
- * water. These -.34 .. -1.8, photos whose light drifts -.12 and more. */
-#define LEAST_EXPLAINED_AROUND -.25
+ * water. These -.22 .. -1.2, photos whose light drifts -.13 and more. */
+#define LEAST_EXPLAINED_AROUND -.18
 #define AROUND_OF_HOLE (1. / 16)
 #define LEAST_AROUND_PX 8
 #define AROUND_STEPS 4
+#define MOST_OF_BORDER 4000
 /* Where more than half of the hole lies beyond the box of the sources, as when a picture is
  * extended, copies come from one side only, and what a trend has of things and not of light tints
  * them: there it must explain such a part of what differs from place to place. Textures in a light
@@ -68,24 +69,30 @@ static bool is_at_border(const rc_mask *flags, int x, int y) {
   return false;
 }
 
-/* What lies in a square around any pixel of the hole's border, the more often the nearer. */
-static void sum_around(const rc_samples *samples, const rc_tone *tone, rc_box hole,
-                       rc_tone_places *places) {
+/* What lies in a square around every n-th pixel of the hole's border, the more often the nearer. */
+static recede_status sum_around(rc_context *context, const rc_samples *samples, const rc_tone *tone,
+                                rc_box hole, rc_tone_places *places) {
   const rc_mask *flags = samples->flags;
-  int px = (int)(AROUND_OF_HOLE * rc_longer_side(hole));
+  int px = (int)(AROUND_OF_HOLE * rc_longer_side(hole)), border = 0, seen = 0;
   if (px < LEAST_AROUND_PX) px = LEAST_AROUND_PX;
   int step = px / AROUND_STEPS;
   rc_box box = rc_box_grown(hole, px, flags->width, flags->height);
   memset(places, 0, sizeof *places);
   places->side = PLACES;
   for (int y = hole.y0; y < hole.y1; y++)
+    for (int x = hole.x0; x < hole.x1; x++) border += is_at_border(flags, x, y);
+  int every = border / MOST_OF_BORDER + 1;
+  for (int y = hole.y0; y < hole.y1; y++) {
+    RC_TRY(rc_poll(context));
     for (int x = hole.x0; x < hole.x1; x++) {
-      if (!is_at_border(flags, x, y)) continue;
+      if (!is_at_border(flags, x, y) || seen++ % every) continue;
       for (int j = y - px; j <= y + px; j += step)
         for (int i = x - px; i <= x + px; i += step)
           if (i >= box.x0 && i < box.x1 && j >= box.y0 && j < box.y1)
             add_sample(samples, tone, box, i, j, places);
     }
+  }
+  return RECEDE_OK;
 }
 
 static bool lies_beyond(const rc_mask *flags, const rc_box *hole, const rc_box *box) {
@@ -100,15 +107,18 @@ static bool lies_beyond(const rc_mask *flags, const rc_box *hole, const rc_box *
   return (double)(target - within_box) > MOST_BEYOND * (double)target;
 }
 
-void rc_trend_view_set(const rc_samples *samples, const rc_tone *tone, rc_trend_view *view) {
+recede_status rc_trend_view_set(rc_context *context, const rc_samples *samples, const rc_tone *tone,
+                                rc_trend_view *view) {
   const rc_mask *flags = samples->flags;
   rc_box hole = rc_box_of(flags, RC_TARGET);
   int px = (int)(BESIDE_OF_HOLE * rc_longer_side(hole));
   rc_box beside = rc_box_grown(hole, px, flags->width, flags->height);
   rc_places_sum(samples, tone, tone->box, PLACES, &view->all);
+  RC_TRY(rc_poll(context));
   rc_places_sum(samples, tone, beside, PLACES, &view->beside);
-  sum_around(samples, tone, hole, &view->around);
+  RC_TRY(sum_around(context, samples, tone, hole, &view->around));
   view->beyond = lies_beyond(flags, &hole, &tone->box);
+  return rc_poll(context);
 }
 
 bool rc_places_differ(const rc_tone_place *p, const rc_tone_place *q, rc_tone_place *difference) {
@@ -121,18 +131,18 @@ bool rc_places_differ(const rc_tone_place *p, const rc_tone_place *q, rc_tone_pl
   return true;
 }
 
-/* How much the places differ, and how much of that a trend leaves. */
+/* How much places differ, and how much of that a trend leaves. */
 typedef struct differences {
   double all, left;
 } differences;
 
 static void add_difference(const rc_tone *trend, const rc_tone_place *p, const rc_tone_place *q,
-                           differences *sum) {
+                           double weight, differences *sum) {
   rc_tone_place d;
   if (!rc_places_differ(p, q, &d)) return;
   for (int k = 0; k < trend->channels; k++) {
-    sum->all += fabs(d.value[k]);
-    sum->left += fabs(d.value[k] - rc_tone_value(trend, k, d.terms));
+    sum->all += weight * fabs(d.value[k]);
+    sum->left += weight * fabs(d.value[k] - rc_tone_value(trend, k, d.terms));
   }
 }
 
@@ -145,19 +155,22 @@ double rc_trend_explains(const rc_tone *trend, const rc_tone_places *places) {
   for (int y = 0; y < places->side; y++)
     for (int x = 0; x < places->side; x++) {
       const rc_tone_place *p = &places->of[y][x];
-      if (x + 1 < places->side) add_difference(trend, p, &places->of[y][x + 1], &sum);
-      if (y + 1 < places->side) add_difference(trend, p, &places->of[y + 1][x], &sum);
+      if (x + 1 < places->side) add_difference(trend, p, &places->of[y][x + 1], 1, &sum);
+      if (y + 1 < places->side) add_difference(trend, p, &places->of[y + 1][x], 1, &sum);
     }
   return explained(&sum);
 }
 
-/* Part of what any place differs by from any other. */
+/* Part of what any sample's place differs by from any other's. */
 static double explains_all(const rc_tone *trend, const rc_tone_places *places) {
   differences sum = {0, 0};
   int side = places->side;
   for (int i = 1; i < side * side; i++)
-    for (int k = 0; k < i; k++)
-      add_difference(trend, &places->of[i / side][i % side], &places->of[k / side][k % side], &sum);
+    for (int k = 0; k < i; k++) {
+      const rc_tone_place *p = &places->of[i / side][i % side],
+                          *q = &places->of[k / side][k % side];
+      add_difference(trend, p, q, p->count * q->count, &sum);
+    }
   return explained(&sum);
 }
 
@@ -184,7 +197,7 @@ static double explains_variance(const rc_tone *trend, const rc_tone_places *plac
 }
 
 bool rc_trend_is_light(const rc_tone *trend, const rc_trend_view *view) {
-  return rc_trend_explains(trend, &view->all) >= LEAST_EXPLAINED &&
+  return rc_trend_explains(trend, &view->all) >= LEAST_EXPLAINED_NEARBY &&
          rc_trend_explains(trend, &view->beside) >= LEAST_EXPLAINED_BESIDE &&
          explains_all(trend, &view->around) >= LEAST_EXPLAINED_AROUND &&
          (!view->beyond || explains_variance(trend, &view->all) >= LEAST_EXPLAINED_BEYOND);

@@ -41,7 +41,8 @@ typedef struct rc_trend_view {
   bool beyond; /* most of the hole lies outside the sources' box */
 } rc_trend_view;
 
-void rc_trend_view_set(const rc_samples *samples, const rc_tone *tone, rc_trend_view *view);
+recede_status rc_trend_view_set(rc_context *context, const rc_samples *samples, const rc_tone *tone,
+                                rc_trend_view *view);
 /* Part of the differences between neighbouring places that a trend explains. */
 double rc_trend_explains(const rc_tone *trend, const rc_tone_places *places);
 bool rc_trend_is_light(const rc_tone *trend, const rc_trend_view *view);

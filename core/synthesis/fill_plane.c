@@ -161,7 +161,7 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
   drop_new_dashes(dashes, before, e);
   if (e->line_count > before) rc_crossings_keep_sure(e->lines, &e->line_count); /* chance is weak */
   /* A rail does not come again where its sleepers do. */
-  for (int i = 0; i < e->line_count; i++) e->due = e->due && !rc_crossing_is_lone(&e->lines[i]);
+  e->due = e->due && !rc_crossings_have_lone(e->lines, e->line_count);
   /* Where there are dashes it is they that repeat, not what the lines lie on. */
   RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, &e->chart, !dashes->count,
                        e->lines, &e->line_count, &e->rails));
@@ -288,7 +288,7 @@ static recede_status keep_alike(rc_context *context, const rc_problem *problem, 
   RC_TRY(rc_keep_alike(context, band, e->images, e->flags, e->level_count, &taken));
   if (taken < MUCH_TAKEN || !rc_tone_drifts(tone)) return RECEDE_OK;
   RC_TRY(rc_tone_apply(context, tone, &problem->flags, RC_KNOWN, 1, filled));
-  rc_tone_fit(filled, &problem->flags, band, e->params->engine_tone, tone);
+  RC_TRY(rc_tone_fit(context, filled, &problem->flags, band, e->params->engine_tone, tone));
   RC_TRY(rc_tone_apply(context, tone, &problem->flags, RC_KNOWN, -1, filled));
   rc_release(context, pyramid);
   return build_pyramid(context, problem, filled, e);
@@ -331,7 +331,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   rc_band band = own_scales(problem);
   if (params->engine_near && !problem->synthesis)
     RC_TRY(rc_keep_near(context, &problem->flags, &problem->target, &band));
-  rc_tone_fit(filled, &problem->flags, &band, params->engine_tone, &tone);
+  RC_TRY(rc_tone_fit(context, filled, &problem->flags, &band, params->engine_tone, &tone));
   RC_TRY(rc_tone_apply(context, &tone, &problem->flags, RC_KNOWN, -1, filled));
   RC_TRY(rc_stage(context, "pyramid", .07, .1));
   rc_block *pyramid = rc_mark(context);

@@ -309,7 +309,7 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   double misfit;
   rc_trial best;
   /* What stands alone comes again in no lattice. */
-  bool lone = e->lines_taken || (e->line_count && rc_crossing_is_lone(&e->lines[0]));
+  bool lone = e->lines_taken || rc_crossings_have_lone(e->lines, e->line_count);
   bool regular = e->params->engine_regular && e->params->surface != RECEDE_SURFACE_RAISED && !lone;
   bool told = e->due && e->of_all.regular; /* by more than joints */
   bool joints = e->params->engine_joints && !told && !rc_runs(&e->rails);

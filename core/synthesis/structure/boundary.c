@@ -303,8 +303,8 @@ recede_status rc_boundary_find(rc_context *context, const rc_image *images, cons
   RC_TRY(search(context, images, masks, levels, from, chart, lines, *count, &line, &apart_px,
                 &found, &sought, &band));
   if (!found && band.band && !*count && !rc_runs(rails)) lines[(*count)++] = band;
-  rc_copy direction = found ? rc_crossing_direction(chart, &line) : (rc_copy){0, 0, 0};
   if (!found) return RECEDE_OK;
+  rc_copy direction = rc_crossing_direction(chart, &line);
   bool as_rails = rc_parallel_in_plane(direction, (rc_copy){rails->a, rails->b, 0});
   if (as_rails && !lies_along_a_clear_line(&line, apart_px, lines, *count)) return RECEDE_OK;
   const rc_boundary *between = &sought.boundaries[0];

@@ -8,9 +8,10 @@
 
 /* Looks for one, and for others parallel to it. The first joins the lines, of which only those
  * parallel to it stay, and of these not those of a texture that repeats, but for one that stands
- * alone; a texture that runs another way than it does no longer runs. Without one, or where the
- * texture runs along it, all stays as it is, and the sides have no boundary. images and masks: the
- * pyramid's levels, finest first; from: what rc_lines_level says. */
+ * alone; a texture that runs another way than it does no longer runs, nor one that runs along it,
+ * if a clear line lies there and only one side runs. Without one, or where the texture runs along
+ * it otherwise, all stays as it is, and the sides have no boundary. images and masks: the pyramid's
+ * levels, finest first; from: what rc_lines_level says. */
 recede_status rc_boundary_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                                int levels, int from, const rc_chart *chart,
                                rc_crossing lines[RC_MOST_LINES], int *count, rc_rails *rails,

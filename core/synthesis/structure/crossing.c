@@ -81,14 +81,20 @@ void rc_crossings_sort(rc_crossing *lines, int count) {
     }
 }
 
-static bool may_lead_alone(const rc_crossing *line) {
-  return line->alone && line->strength >= LEAST_LEADING_STRENGTH;
+/* As the other edge of what is lone may. */
+static bool may_go_with_a_lone_one(const rc_crossing *line) {
+  return rc_crossing_is_lone(line) || (line->alone && line->strength >= LEAST_LEADING_STRENGTH);
+}
+
+bool rc_crossings_have_lone(const rc_crossing *lines, int count) {
+  for (int i = 0; i < count; i++)
+    if (rc_crossing_is_lone(&lines[i])) return true;
+  return false;
 }
 
 void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count) {
-  bool any = false;
-  for (int i = 0; i < *count; i++) any = any || rc_crossing_is_lone(&lines[i]);
-  keep(any ? may_lead_alone : rc_crossing_is_lone, lines, count);
+  bool any = rc_crossings_have_lone(lines, *count);
+  keep(any ? may_go_with_a_lone_one : rc_crossing_is_lone, lines, count);
 }
 
 void rc_crossings_keep_sure(rc_crossing lines[RC_MOST_LINES], int *count) {

@@ -67,7 +67,8 @@ void rc_crossings_keep_parallel(const rc_chart *chart, rc_crossing lines[RC_MOST
                                 int *count);
 /* Strongest first. */
 void rc_crossings_sort(rc_crossing *lines, int count);
-/* And, beside one, the others that stand alone: of a beam both edges do. */
+bool rc_crossings_have_lone(const rc_crossing *lines, int count);
+/* And with one what stands alone but is not sure: a beam has two edges. */
 void rc_crossings_keep_lone(rc_crossing lines[RC_MOST_LINES], int *count);
 /* Strongest first. */
 void rc_crossings_keep_sure(rc_crossing lines[RC_MOST_LINES], int *count);

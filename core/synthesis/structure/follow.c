@@ -27,8 +27,10 @@
 #define GOES_ON_PX 24
 #define LEAST_GOING_ON .75f
 /* One that is not clear must do so for half as far as it is to be led, at both ends: edges of
- * stones that are longer than three windows met across a hole, and a bar lay on the beach. */
+ * stones that are longer than three windows met across a hole, and a bar lay on the beach. Where
+ * the ground gets this much narrower it looks another way by itself. */
 #define LEAST_GOING_ON_OF_LENGTH .5f
+#define LEAST_AS_WIDE_OF_LENGTH .7f
 /* Where a sure one is less than half as wide as beside the hole, it need not look the same. */
 #define LEAST_AS_WIDE .5f
 #define LEAST_OF_CONTRAST .02f /* of its square: less is another thing's slope */
@@ -142,7 +144,9 @@ static bool goes_on(const frame *f, float outwards, float x, float y, const rc_p
   for (int k = 0; k < f->windows; k++) {
     float most = -1, from = RC_PROFILE_FROM_PX + GOES_ON_PX * (float)k;
     bool known = false;
-    if (sure && as_wide(f, x, y, outwards * (from + GOES_ON_PX / 2.f)) < LEAST_AS_WIDE) break;
+    float wide = as_wide(f, x, y, outwards * (from + GOES_ON_PX / 2.f));
+    if ((sure && wide < LEAST_AS_WIDE) || (k >= GOES_ON_WINDOWS && wide < LEAST_AS_WIDE_OF_LENGTH))
+      break;
     for (float across = -PINNED_WITHIN_PX; across <= PINNED_WITHIN_PX; across += .5f) {
       rc_profile here;
       if (!rc_profile_mean(&f->ruler, x - f->ruler.uy * across, y + f->ruler.ux * across,

@@ -181,6 +181,10 @@ static recede_status follow(rc_context *context, const rc_seen *seen, const rc_c
   return RECEDE_OK;
 }
 
+static bool same_ends(const rc_crossing *p, const rc_crossing *q) {
+  return p->ax == q->ax && p->ay == q->ay && p->bx == q->bx && p->by == q->by;
+}
+
 /* Of the leading direction, or, where none of that goes on, of the next. */
 static recede_status follow_parallel(rc_context *context, const rc_seen *seen,
                                      const rc_chart *chart, int exponent,
@@ -194,9 +198,10 @@ static recede_status follow_parallel(rc_context *context, const rc_seen *seen,
     *count = left_count;
     rc_crossings_keep_parallel(chart, lines, count);
     if (!*count) break;
-    rc_copy direction = rc_crossing_direction(chart, &lines[0]);
-    for (int i = 0; i < left_count; i++)
-      if (!rc_parallel_in_plane(direction, rc_crossing_direction(chart, &left[i])))
+    for (int i = 0, kept = 0; i < left_count; i++)
+      if (kept < *count && same_ends(&left[i], &lines[kept]))
+        kept++;
+      else
         left[others++] = left[i];
     left_count = others;
     RC_TRY(follow(context, seen, chart, exponent, lines, count));

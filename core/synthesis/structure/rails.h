@@ -45,7 +45,7 @@ rc_copy rc_copy_on_rails(const rc_rails *rails, const rc_chart *chart, float tol
 
 /* From the lines that cross the hole or, where none does and it reaches the picture's end, from how
  * the texture beside it changes in all directions; sharpened by how alike the texture is along
- * them. may_repeat: where, beside the hole, it repeats, only lines that stand alone stay. images
+ * them. may_repeat: where, beside the hole, it repeats, only lone lines stay. images
  * and masks: the pyramid's levels, finest first; chart: of the finest. */
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
                             int levels, const rc_chart *chart, bool may_repeat, rc_crossing *lines,
