@@ -123,10 +123,115 @@ static void colours_are_no_light(void) {
   g_assert_cmpfloat(most, <, .15);
 }
 
+/* Leads to the middle of the horizon, in such a row, and is so many px wide to each side and so
+ * many boards long, as seen, at the picture's lower end. */
+typedef struct pier {
+  int horizon;
+  double half_px, boards;
+} pier;
+
+/* A board's brightness, dark at its joint; negative beside the pier. */
+static double board_at(const pier *p, double x, double y) {
+  double near = fmax(y - p->horizon, .01) / (300 - p->horizon), board = p->boards / near;
+  if (fabs(x - 200) > near * p->half_px) return -1;
+  return .12 * (.8 + .4 * noise_at((int)board, 0, 5)) * (board - floor(board) < .12 ? .4 : 1);
+}
+
+/* A dark pier in water whose light drifts, under the sky. */
+static picture pier_in_water(const pier *p) {
+  picture drawn = picture_new(400, 300, 1, RECEDE_U8);
+  for (int y = 0; y < 300; y++)
+    for (int x = 0; x < 400; x++) {
+      double water = .6 - .001 * y + .03 * (noise_at(x / 4, y, 7) - .5), sum = 0;
+      for (int i = 0; i < 4; i++) {
+        double board = board_at(p, x, y + i / 4. - .375);
+        sum += board < 0 ? water : board + .03 * (noise_at(x / 3, y, 6) - .5);
+      }
+      picture_set(&drawn, x, y, 0, (float)(y < p->horizon ? .8 : sum / 4));
+    }
+  return drawn;
+}
+
+static task hole_at_pier(const pier *p, area hole) {
+  gchar *settings = g_strdup_printf("quality=draft orientation=horizon horizon=0,%d,400,%d",
+                                    p->horizon, p->horizon);
+  task t = task_new(pier_in_water(p), settings);
+  task_round_hole(&t, hole);
+  task_succeeds(&t);
+  g_free(settings);
+  return t;
+}
+
+/* By how much a block of 8 x 8 px is too light or too dark at most. */
+static double most_off(const task *t, area hole) {
+  double most = 0;
+  for (int y = hole.y0; y < hole.y1; y += 8)
+    for (int x = hole.x0; x < hole.x1; x += 8) {
+      const area block = {x, y, x + 8, y + 8};
+      if (!(picture_get(&t->mask, MIN(x + 4, 399), MIN(y + 4, 299), 0) > 0)) continue;
+      most = fmax(most, fabs(moments_of(&t->result, &t->mask, true, block, 0).mean -
+                             moments_of(&t->image, &t->mask, true, block, 0).mean));
+    }
+  return most;
+}
+
+/* The step to the dark pier bends no trend of the water: a hole beside it gets no dark smudge. */
+static void water_beside_a_pier(void) {
+  static const area holes[] = {{20, 180, 110, 230},
+                               {10, 160, 100, 220},
+                               {290, 180, 380, 230},
+                               {300, 190, 380, 250},
+                               {0, 190, 80, 260}};
+  static const pier wide = {60, 120, 6};
+  double most = 0;
+  for (gsize i = 0; i < G_N_ELEMENTS(holes); i++) {
+    task t = hole_at_pier(&wide, holes[i]);
+    double off = most_off(&t, holes[i]);
+    g_test_message("hole at %d,%d: off by %.3f", holes[i].x0, holes[i].y0, off);
+    most = fmax(most, off);
+    task_clear(&t);
+  }
+  g_assert_cmpfloat(most, <, .05);
+}
+
+/* Of a hole in the boards, the part that is brighter than any board. */
+static double part_water(const task *t) {
+  double water = 0, count = 0;
+  for (int y = 0; y < 300; y++)
+    for (int x = 0; x < 400; x++)
+      if (picture_get(&t->mask, x, y, 0) > 0)
+        count++, water += picture_get(&t->result, x, y, 0) > .2f;
+  return water / count;
+}
+
+/* The water's trend is not the boards': taken as theirs, it puts water among them. */
+static void boards_of_a_pier(void) {
+  static const struct {
+    pier pier;
+    area hole;
+  } scenes[] = {
+      {{100, 80, 6}, {185, 136, 214, 214}},  {{100, 80, 10}, {184, 152, 216, 212}},
+      {{100, 80, 10}, {181, 152, 218, 223}}, {{100, 80, 6}, {182, 160, 219, 231}},
+      {{100, 80, 6}, {184, 157, 216, 217}},
+  };
+  double most = 0, off = 0;
+  for (gsize i = 0; i < G_N_ELEMENTS(scenes); i++) {
+    task t = hole_at_pier(&scenes[i].pier, scenes[i].hole);
+    double water = part_water(&t), tint = most_off(&t, scenes[i].hole);
+    g_test_message("scene %d: %.3f water, off by %.3f", (int)i, water, tint);
+    most = fmax(most, water), off = fmax(off, tint);
+    task_clear(&t);
+  }
+  g_assert_cmpfloat(most, <, .02);
+  g_assert_cmpfloat(off, <, .05);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/light/sky", sky_tints_no_floor);
   g_test_add_func("/light/beyond", things_tint_nothing_beyond);
   g_test_add_func("/light/colours", colours_are_no_light);
+  g_test_add_func("/light/pier-water", water_beside_a_pier);
+  g_test_add_func("/light/pier-boards", boards_of_a_pier);
   return g_test_run();
 }
