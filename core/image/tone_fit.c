@@ -17,12 +17,11 @@
 #define MOST_COLOURED .133
 /* Least squares bend a trend across the step between a dark pier and bright water until it fits
  * neither. One that is fitted to what neighbouring places differ by, steps left out, is taken where
- * it explains so much more of that, beside the hole more and so much of it, and so much of the
- * variance: the pier .04 to .16 more, .10 to .56, and .20 to .49; dunes, tea and fields one or none
- * of these. */
+ * it explains so much more of that, and beside the hole more and so much of it: the pier .04 to .16
+ * more, and .10 to .56; dunes, tea and fields one or none of both. Of the variance it may explain
+ * little, for most of that are the things. */
 #define LEAST_BETTER .02
 #define LEAST_BETTER_BESIDE .1
-#define LEAST_EXPLAINED_BETWEEN .1
 /* A place counts if such a part of it are samples; and a trend needs so many differences. */
 #define LEAST_OF_PLACE .25
 #define LEAST_DIFFERENCES 20
@@ -207,13 +206,12 @@ static bool fit_between_steps(const rc_samples *samples, const sums *s, differen
   return true;
 }
 
-static bool is_better(const rc_tone *trend, const rc_tone *other, const sums *s,
-                      const rc_trend_view *view) {
+static bool is_better(const rc_tone *trend, const rc_tone *other, const rc_trend_view *view) {
   double beside = rc_trend_explains(trend, &view->beside);
   return rc_trend_explains(trend, &view->all) >
              rc_trend_explains(other, &view->all) + LEAST_BETTER &&
          beside >= LEAST_BETTER_BESIDE && beside > rc_trend_explains(other, &view->beside) &&
-         explained(trend, s) >= LEAST_EXPLAINED_BETWEEN && rc_trend_is_light(trend, view);
+         rc_trend_is_light(trend, view);
 }
 
 /* What is too large for a stack. */
@@ -232,7 +230,7 @@ static recede_status choose(rc_context *context, const rc_samples *samples, cons
   RC_TRY(rc_trend_view_set(context, samples, tone, &w->view));
   *light = rc_trend_is_light(tone, &w->view);
   if (fit_between_steps(samples, s, &w->differences, &between) &&
-      is_better(&between, tone, s, &w->view))
+      is_better(&between, tone, &w->view))
     *tone = between, *light = true;
   rc_release(context, mark);
   return rc_poll(context);
