@@ -26,9 +26,9 @@
 #define GOES_ON_WINDOWS_LEAVING 4 /* a dash is shorter */
 #define GOES_ON_PX 24
 #define LEAST_GOING_ON .75f
-/* One that is not clear must do so for half as far as it is to be led, at both ends: edges of
- * stones that are longer than three windows met across a hole, and a bar lay on the beach. Where
- * the ground gets this much narrower it looks another way by itself. */
+/* One that is not sure, and no stronger than others, must do so for half as far as it is to be
+ * led, at both ends: edges of stones that are longer than three windows met across a hole, and a
+ * bar lay on the beach. Where the ground gets this much narrower it looks another way by itself. */
 #define LEAST_GOING_ON_OF_LENGTH .5f
 #define LEAST_AS_WIDE_OF_LENGTH .7f
 /* Where a sure one is less than half as wide as beside the hole, it need not look the same. */
@@ -327,12 +327,11 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int wi
 
 int rc_windows_of(const rc_crossing *line, bool seen_coarser) {
   if (line->leaves) return GOES_ON_WINDOWS_LEAVING;
-  int least = line->as_strong > RC_HARDLY_AS_STRONG ? GOES_ON_WINDOWS
-              : seen_coarser                        ? GOES_ON_WINDOWS_SEEN_COARSER
-                                                    : GOES_ON_WINDOWS_OF_STRONGEST;
+  if (line->as_strong <= RC_HARDLY_AS_STRONG)
+    return seen_coarser ? GOES_ON_WINDOWS_SEEN_COARSER : GOES_ON_WINDOWS_OF_STRONGEST;
   int of_length = (int)ceilf(LEAST_GOING_ON_OF_LENGTH * rc_crossing_length(line) / GOES_ON_PX);
-  bool crosses = line->strength < RC_CLEAR_STRENGTH && !line->ends_inside;
-  return crosses && of_length > least ? of_length : least;
+  bool is_chancy = line->strength < RC_SURE_STRENGTH && !line->ends_inside;
+  return is_chancy && of_length > GOES_ON_WINDOWS ? of_length : GOES_ON_WINDOWS;
 }
 
 bool rc_follow(const rc_seen *picture, const rc_chart *chart, int windows, rc_crossing *line) {
