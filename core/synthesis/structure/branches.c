@@ -275,6 +275,28 @@ static float way_out(const rc_mask *flags, const loose *end) {
   }
 }
 
+static bool is_known(const rc_mask *flags, float x, float y) {
+  int px = rc_floor(x + .5f), py = rc_floor(y + .5f);
+  return rc_inside(flags->width, flags->height, px, py) && *rc_flag(flags, px, py) & RC_KNOWN;
+}
+
+/* Whether beside most of the line there is something known, no farther than profiles reach: it
+ * would be seen there. A joint of boards that the hole cut by a pixel or two was led on into water.
+ */
+static bool lies_along_the_border(const rc_mask *flags, const rc_crossing *c) {
+  float length = rc_crossing_length(c);
+  float across_x = RC_PROFILE * (c->ay - c->by) / length;
+  float across_y = RC_PROFILE * (c->bx - c->ax) / length;
+  int beside = 0, samples = 32;
+  for (int i = 1; i < samples; i++) {
+    float t = (float)i / (float)samples;
+    float x = c->ax + t * (c->bx - c->ax), y = c->ay + t * (c->by - c->ay);
+    beside +=
+        is_known(flags, x + across_x, y + across_y) || is_known(flags, x - across_x, y - across_y);
+  }
+  return 2 * beside > samples;
+}
+
 recede_status rc_leaving_add(rc_context *context, const rc_image *image, const rc_mask *mask,
                              int exponent, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
                              int *count) {
@@ -311,8 +333,9 @@ recede_status rc_leaving_add(rc_context *context, const rc_image *image, const r
     /* Beside it, too, the picture ends: half as far is looked. */
     c.alone =
         rc_chart_w(&here, c.ax, c.ay) > 0 && rc_end_stands_alone(&seen, &here, &c, w.reach_px / 2);
-    if (c.alone && rc_follow(&seen, &here, rc_windows_of(&c, false), &c) &&
-        rc_crossing_is_lone(&c) && rc_chart_w(&here, c.ax, c.ay) > 0)
+    if (c.alone && !lies_along_the_border(mask, &c) &&
+        rc_follow(&seen, &here, rc_windows_of(&c, false), &c) && rc_crossing_is_lone(&c) &&
+        rc_chart_w(&here, c.ax, c.ay) > 0)
       lines[w.line_count++] = c;
   }
   give_back(&w, exponent, before, axis, count);
