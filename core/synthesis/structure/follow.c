@@ -140,12 +140,13 @@ static float as_wide(const frame *f, float x, float y, float outwards) {
 /* Where the picture or the source ends, so may the line. */
 static bool goes_on(const frame *f, float outwards, float x, float y, const rc_profile *own) {
   float square = rc_profile_dot(own, own);
-  bool sure = f->line->strength >= RC_SURE_STRENGTH && !f->line->leaves;
+  bool leaves = f->line->leaves, sure = f->line->strength >= RC_SURE_STRENGTH && !leaves;
   for (int k = 0; k < f->windows; k++) {
     float most = -1, from = RC_PROFILE_FROM_PX + GOES_ON_PX * (float)k;
     bool known = false;
     float wide = as_wide(f, x, y, outwards * (from + GOES_ON_PX / 2.f));
-    if ((sure && wide < LEAST_AS_WIDE) || (k >= GOES_ON_WINDOWS && wide < LEAST_AS_WIDE_OF_LENGTH))
+    if ((sure && wide < LEAST_AS_WIDE) ||
+        (k >= GOES_ON_WINDOWS && !leaves && wide < LEAST_AS_WIDE_OF_LENGTH))
       break;
     for (float across = -PINNED_WITHIN_PX; across <= PINNED_WITHIN_PX; across += .5f) {
       rc_profile here;
