@@ -21,7 +21,7 @@
 #define MOST_TAKEN .25
 /* In place of a piece's own source another one's is no larger or smaller than this. */
 #define MOST_ENLARGED 3.f
-#define MOST_SHRUNK 6.f
+#define MOST_SHRUNK 10.f
 
 /* Nearly all that a sample counts lies so near, in px of the size that is wanted. */
 #define SAMPLED_PX 1
@@ -53,7 +53,7 @@ typedef struct track {
 static rc_copy copy_of_piece(const track *t, int piece, int from) {
   const rc_chart *chart = &t->level->chart;
   const rc_crossing *c = &t->line;
-  float part = ((float)piece + .5f) / (float)c->pieces;
+  float part = rc_crossing_part(chart, c, (float)piece + .5f);
   return rc_copy_exact(chart, c->ax + part * t->dx - chart->x0, c->ay + part * t->dy - chart->y0,
                        c->from_x[from] - chart->x0, c->from_y[from] - chart->y0);
 }
@@ -81,23 +81,34 @@ static bool choose_copy(const track *t, int piece, int x, int y, rc_copy *copy) 
   return false;
 }
 
+/* How far from a to b: where it is as far away, of what recedes, for beside a slanting line the
+ * nearest place is not, and a piece is short. */
+static float part_at(const track *t, float x, float y) {
+  const rc_crossing *c = &t->line;
+  const rc_chart *chart = &t->level->chart;
+  if (c->recedes) {
+    float a = rc_chart_w(chart, c->ax, c->ay), b = rc_chart_w(chart, c->bx, c->by);
+    return (rc_chart_w(chart, x, y) - a) / (b - a);
+  }
+  return ((x - c->ax) * t->dx + (y - c->ay) * t->dy) / (t->dx * t->dx + t->dy * t->dy);
+}
+
 static void lock_line(const rc_crossing *line, int exponent, rc_level *level) {
   float unit = (float)(1 << exponent), from = line->ends_inside ? 0 : -.1f;
   track along = {
       level, rc_crossing_coarser(*line, exponent), 0, 0, exponent == 0, rc_crossing_is_sure(line)};
   const rc_crossing *c = &along.line;
-  float dx = along.dx = c->bx - c->ax, dy = along.dy = c->by - c->ay, square = dx * dx + dy * dy;
+  along.dx = c->bx - c->ax, along.dy = c->by - c->ay;
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
-      float t = (((float)x - c->ax) * dx + ((float)y - c->ay) * dy) / square;
-      float px = (float)x, py = (float)y;
+      float px = (float)x, py = (float)y, t = part_at(&along, px, py);
       float reach =
           c->reach_px[rc_crossing_is_right(c, px, py)] * rc_chart_w(&level->chart, px, py);
       reach = fmaxf(fmaxf(LOCKED_PX / unit, LEAST_LOCKED_PX), reach + LOCKED_BESIDE_PX / unit);
       if (!rc_level_is_target(level, x, y) || t < from || t > 1.1f ||
           rc_crossing_distance(c, px, py) > reach)
         continue;
-      int piece = (int)(fminf(fmaxf(t, 0), .999f) * (float)c->pieces);
+      int piece = rc_crossing_piece(&level->chart, c, t);
       size_t at = rc_level_at(level, x, y);
       rc_copy copy;
       if (!choose_copy(&along, piece, x, y, &copy)) continue;

@@ -21,6 +21,10 @@
 #define ACROSS 4
 /* A strip between the hole and the picture's end that is no longer along a line shows no run. */
 #define STRIP_PX 32
+/* Where the ground is so much narrower than at a line's end, little is seen of it, and between the
+ * hole and the horizon often something stands. It is led as far as sources may be reduced. */
+#define FAR_AWAY .35f
+#define FARTHEST_AWAY (1 / 5.5f)
 /* So many ends, the strongest, are looked at. */
 #define MOST_ENDS 16
 
@@ -261,15 +265,22 @@ recede_status rc_branches_add(rc_context *context, const rc_image *image, const 
   return rc_poll(context);
 }
 
-/* How far inwards an end leaves the hole where the picture ends, or nearly so; else infinite. */
-static float way_out(const rc_mask *flags, const loose *end) {
+/* How far inwards an end leaves the hole where the picture ends, or nearly so, or far away; else
+ * infinite. */
+static float way_out(const work *w, const loose *end, bool *recedes) {
+  const rc_mask *flags = w->seen->flags;
+  float own = rc_chart_w(w->chart, end->x, end->y);
   int last = 0;
+  *recedes = false;
   for (int way = 1;; way++) {
     float x = end->x - (float)way * end->out[0], y = end->y - (float)way * end->out[1];
+    float here = rc_chart_w(w->chart, x, y);
     if (!rc_inside(flags->width, flags->height, rc_floor(x + .5f), rc_floor(y + .5f)))
       return last ? (float)last : INFINITY;
-    if (is_target(flags, x, y))
+    if (is_target(flags, x, y) && here > FARTHEST_AWAY * own)
       last = way;
+    else if ((*recedes = here < FAR_AWAY * own))
+      return last ? (float)last : INFINITY;
     else if (way - last > STRIP_PX)
       return INFINITY;
   }
@@ -297,6 +308,22 @@ static bool lies_along_the_border(const rc_mask *flags, const rc_crossing *c) {
   return 2 * beside > samples;
 }
 
+static bool is_near_the_end(const rc_mask *mask, rc_box hole) {
+  return hole.x0 <= STRIP_PX || hole.y0 <= STRIP_PX || hole.x1 + STRIP_PX >= mask->width ||
+         hole.y1 + STRIP_PX >= mask->height;
+}
+
+/* Whether any line through it could get so much narrower. */
+static bool recedes_in(const rc_chart *chart, rc_box hole) {
+  float least = INFINITY, most = -INFINITY;
+  for (int corner = 0; corner < 4; corner++) {
+    float w = rc_chart_w(chart, (float)(corner & 1 ? hole.x1 : hole.x0),
+                         (float)(corner & 2 ? hole.y1 : hole.y0));
+    least = fminf(least, w), most = fmaxf(most, w);
+  }
+  return least < FAR_AWAY * most;
+}
+
 recede_status rc_leaving_add(rc_context *context, const rc_image *image, const rc_mask *mask,
                              int exponent, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
                              int *count) {
@@ -305,9 +332,7 @@ recede_status rc_leaving_add(rc_context *context, const rc_image *image, const r
   rc_ends ends;
   int before = *count;
   rc_box hole = rc_box_of(mask, RC_TARGET);
-  bool is_near = hole.x0 <= STRIP_PX || hole.y0 <= STRIP_PX || hole.x1 + STRIP_PX >= mask->width ||
-                 hole.y1 + STRIP_PX >= mask->height;
-  if (!is_near || *count == RC_MOST_LINES) return RECEDE_OK;
+  if (!(is_near_the_end(mask, hole) || recedes_in(&here, hole)) || *count == RC_MOST_LINES) return RECEDE_OK;
   const float *axis = rc_brightness_axis(image);
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_see(context, image, mask, axis, &seen));
@@ -316,7 +341,8 @@ recede_status rc_leaving_add(rc_context *context, const rc_image *image, const r
   collect(&ends, &w);
   for (int i = 0; i < w.end_count && w.line_count < RC_MOST_LINES; i++) {
     const loose *end = &w.ends[i];
-    float way = way_out(mask, end);
+    bool recedes;
+    float way = way_out(&w, end, &recedes);
     RC_TRY(rc_poll(context));
     if (!(end->strength >= RC_CLEAR_STRENGTH && end->as_strong <= RC_HARDLY_AS_STRONG &&
           way >= SHORTEST_PX && way < INFINITY) ||
@@ -329,7 +355,8 @@ recede_status rc_leaving_add(rc_context *context, const rc_image *image, const r
                      .strength = end->strength,
                      .as_strong = end->as_strong,
                      .ends_inside = true,
-                     .leaves = true};
+                     .leaves = true,
+                     .recedes = recedes};
     /* Beside it, too, the picture ends: half as far is looked. */
     c.alone =
         rc_chart_w(&here, c.ax, c.ay) > 0 && rc_end_stands_alone(&seen, &here, &c, w.reach_px / 2);

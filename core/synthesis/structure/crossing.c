@@ -64,6 +64,22 @@ bool rc_crossing_is_marking(const rc_crossing *line) {
   return rc_crossing_is_lone(line) && line->strength >= RC_CLEAR_STRENGTH;
 }
 
+/* How many times as narrow it is at a as at b. */
+static float narrowing(const rc_chart *chart, const rc_crossing *line) {
+  if (!line->recedes) return 1;
+  return rc_chart_w(chart, line->ax, line->ay) / rc_chart_w(chart, line->bx, line->by);
+}
+
+float rc_crossing_part(const rc_chart *chart, const rc_crossing *line, float n) {
+  float times = narrowing(chart, line), in_plane = n / (float)line->pieces;
+  return in_plane * times / (1 - in_plane * (1 - times));
+}
+
+int rc_crossing_piece(const rc_chart *chart, const rc_crossing *line, float part) {
+  float times = narrowing(chart, line), inside = fminf(fmaxf(part, 0), .999f);
+  return (int)(inside / (times + inside * (1 - times)) * (float)line->pieces);
+}
+
 static bool is_no_faint_one(const rc_crossing *line) { return !line->faint; }
 
 static void keep(bool (*which)(const rc_crossing *), rc_crossing lines[RC_MOST_LINES], int *count) {

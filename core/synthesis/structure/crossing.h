@@ -8,7 +8,7 @@
 
 #define RC_MOST_LINES 8 /* parallel ones, and what leaves the picture */
 #define RC_ALL_LINES 24 /* and all that cross them, or end there */
-#define RC_MOST_PIECES 24
+#define RC_MOST_PIECES 48
 
 /* Signal to noise: stones' edges are as strong as this, but chance ones keep less. */
 #define RC_SURE_STRENGTH 30.f
@@ -30,7 +30,8 @@ typedef struct rc_crossing {
   bool alone;       /* hardly any parallel to it looks the same */
   bool faint;       /* it is known only by what tells two textures apart */
   bool ends_inside; /* at a */
-  bool leaves;      /* and that is at the picture's end, or too near to see a run of it behind */
+  bool leaves;      /* and that is at the picture's end, or too near to see a run of it behind, */
+  bool recedes;     /* or far away: its pieces are equally long in the plane */
   bool band;        /* it is wide, and hardly anything at the hole's border is as strong */
   float axis[3];    /* the weights of colours it was seen by */
   /* How far it reaches to its left and right, px where w = 1; 0 where that is not told. */
@@ -54,6 +55,10 @@ bool rc_crossing_is_marking(const rc_crossing *line);
 void rc_crossing_tell_band(rc_crossing *line, bool seen_coarser);
 /* After that: how far a faint one reaches is chance. */
 void rc_crossing_forget_chance(rc_crossing *line);
+/* How far from a to b, 0..1, its pieces' boundary n lies; n need not be whole. And which piece lies
+ * there. chart: of the same level. */
+float rc_crossing_part(const rc_chart *chart, const rc_crossing *line, float n);
+int rc_crossing_piece(const rc_chart *chart, const rc_crossing *line, float part);
 /* Its direction in the plane, a unit vector. chart: of the same level. */
 rc_copy rc_crossing_direction(const rc_chart *chart, const rc_crossing *line);
 /* Of two such directions, within 4 degrees. */

@@ -71,7 +71,10 @@ static const struct way {
   float most_reduced;
   int pieces, splits;
   bool widens;
-} ways[] = {{1.7f, 8, 5, false}, {3.f, RC_MOST_PIECES, 9, true}, {6.f, RC_MOST_PIECES, 9, true}};
+} ways[] = {{1.7f, 8, 5, false}, {3.f, 24, 9, true}, {6.f, 24, 9, true}};
+/* What recedes has one way: near the picture's end a run may be no longer than a fiftieth of what
+ * it shows of the plane. */
+static const struct way receding = {10.f, RC_MOST_PIECES, 9, true};
 /* It does where w at one end is so many times that at the other; what lies at the horizon itself,
  * where it is less than that (the hole has about 1), does not. */
 #define LEAST_NEARER 1.5f
@@ -178,15 +181,22 @@ static bool straight_source(const frame *f, float split, float t, float *x, floa
   return !place.beyond && place.ratio < f->most_reduced && place.ratio > 1 / f->most_magnified;
 }
 
+/* A piece's, px. */
+static float half_of(const frame *f, int piece) {
+  if (!f->line->recedes) return f->length / (float)(2 * f->line->pieces);
+  float from = rc_crossing_part(f->chart, f->line, (float)piece);
+  return f->length / 2 * (rc_crossing_part(f->chart, f->line, (float)piece + 1) - from);
+}
+
 /* Finds one piece's source near the straight one, the bend of the piece before taken over. kept:
  * the part of own's contrast that it has, less what its tone is off. False: there is none. */
 static bool follow_piece(const frame *f, float split, int piece, const rc_profile *own, float *bend,
                          float *kept) {
   rc_profile here;
   float x, y, square = fmaxf(rc_profile_dot(own, own), 1e-12f), before = *bend,
-              half = f->length / (float)(2 * f->line->pieces);
+              half = half_of(f, piece);
   int count = half < 2 ? 4 : (int)(2 * half);
-  if (!straight_source(f, split, ((float)piece + .5f) / (float)f->line->pieces, &x, &y))
+  if (!straight_source(f, split, rc_crossing_part(f->chart, f->line, (float)piece + .5f), &x, &y))
     return false;
   *kept = LEAST_OF_PIECE;
   for (float step = -MOST_BEND_PX; step <= MOST_BEND_PX; step += PINNED_STEP_PX) {
@@ -209,10 +219,10 @@ static bool follow_side(const frame *f, int first, int end, int step, const rc_p
                         float *sum) {
   float bend = 0, kept;
   for (int piece = first, group = first; piece != end; piece += step) {
-    float split = (float)(step < 0 ? group + 1 : group) / (float)f->line->pieces;
+    float split = rc_crossing_part(f->chart, f->line, (float)(step < 0 ? group + 1 : group));
     if (!follow_piece(f, split, piece, own, &bend, &kept)) {
-      group = piece, bend = 0,
-      split = (float)(step < 0 ? group + 1 : group) / (float)f->line->pieces;
+      group = piece, bend = 0;
+      split = rc_crossing_part(f->chart, f->line, (float)(step < 0 ? group + 1 : group));
       if (!follow_piece(f, split, piece, own, &bend, &kept)) return false;
     }
     *sum += fmaxf(fminf(kept, 1), 0);
@@ -282,7 +292,7 @@ static float octaves_magnified(const frame *f) {
   const rc_crossing *c = f->line;
   float sum = 0;
   for (int k = 0; k < c->pieces; k++) {
-    float t = ((float)k + .5f) / (float)c->pieces;
+    float t = rc_crossing_part(f->chart, c, (float)k + .5f);
     float own = rc_chart_w(f->chart, c->ax + t * (c->bx - c->ax), c->ay + t * (c->by - c->ay));
     sum += fmaxf(rc_log2(own / rc_chart_w(f->chart, c->from_x[k], c->from_y[k])), 0);
   }
@@ -336,8 +346,10 @@ int rc_windows_of(const rc_crossing *line, bool seen_coarser) {
 }
 
 bool rc_follow(const rc_seen *picture, const rc_chart *chart, int windows, rc_crossing *line) {
+  float worth;
+  if (line->recedes) return follow_one_way(picture, chart, windows, &receding, line, &worth);
   const rc_crossing from = *line;
-  float times = nearer(chart, line), most = 0, worth;
+  float times = nearer(chart, line), most = 0;
   bool found = false;
   for (size_t n = 0; n < sizeof ways / sizeof *ways; n++) {
     rc_crossing c = from;
