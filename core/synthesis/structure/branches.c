@@ -332,7 +332,8 @@ recede_status rc_leaving_add(rc_context *context, const rc_image *image, const r
   rc_ends ends;
   int before = *count;
   rc_box hole = rc_box_of(mask, RC_TARGET);
-  if (!(is_near_the_end(mask, hole) || recedes_in(&here, hole)) || *count == RC_MOST_LINES) return RECEDE_OK;
+  if (!(is_near_the_end(mask, hole) || recedes_in(&here, hole)) || *count == RC_MOST_LINES)
+    return RECEDE_OK;
   const float *axis = rc_brightness_axis(image);
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_see(context, image, mask, axis, &seen));
