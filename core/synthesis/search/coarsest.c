@@ -171,6 +171,7 @@ static recede_status start_on_rails(rc_context *context, const rc_descent *e, in
                                     rc_workspace *scratch, rc_trial *best, double *own) {
   starts s = {first, first, first + count, NULL, 0};
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
+  rc_reach_moves(level, s.moves, s.move_count);
   RC_TRY(try_starts(context, e, &s, p, level, scratch, best, own));
   /* Where few had a copy before half of these must have: an empty start fits well. */
   double most = fmin(without + MOST_WITHOUT_COPY, .5 * (1 + without));
@@ -190,6 +191,7 @@ static recede_status keep_to_rails(rc_context *context, rc_descent *e, int count
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
+  rc_reach_moves(level, s.moves, s.move_count);
   e->on_rails = true;
   RC_TRY(try_starts(context, e, &s, &p, level, scratch, &best, &own));
   rc_release(context, mark);
@@ -204,6 +206,7 @@ static recede_status try_rails(rc_context *context, rc_descent *e, int first, in
                                rc_level *level, rc_workspace *scratch, double misfit) {
   rc_trial along, across;
   double own, own_across = INFINITY, without = without_copy(level);
+  rc_ranges ranges = level->ranges;
   int rows = e->rails.rows;
   RC_TRY(rc_trial_new(context, level, &along));
   RC_TRY(rc_trial_new(context, level, &across));
@@ -221,7 +224,7 @@ static recede_status try_rails(rc_context *context, rc_descent *e, int first, in
     rc_trial_restore(level, &across);
   }
   e->on_rails = own < FAVOUR_OF_RAILS * misfit;
-  if (!e->on_rails) level->board = NULL;
+  if (!e->on_rails) level->board = NULL, level->ranges = ranges;
   return RECEDE_OK;
 }
 
@@ -261,8 +264,8 @@ static recede_status try_periods(rc_context *context, rc_descent *e, int first, 
   rc_ranges ranges = level->ranges;
   RC_TRY(rc_trial_new(context, level, &by_periods));
   RC_TRY(rc_moves_by_periods(context, &e->periods, &s.moves, &s.move_count));
-  rc_reach_periods(level, &e->periods);
   level->chart.raised = false;
+  rc_reach_moves(level, s.moves, s.move_count);
   RC_TRY(try_starts(context, e, &s, p, level, scratch, &by_periods, &own));
   e->by_periods = own < favour_of_periods(&e->periods) * *misfit;
   if (e->by_periods)

@@ -40,15 +40,13 @@ static rc_copy move_by(const rc_periods *periods, int n) {
   return (rc_copy){i * p->a + j * q->a, i * p->b + j * q->b, 0.f};
 }
 
-/* The ratio nearest to 1 by which a patch whole periods away is source; 1 where there is none. */
-static float nearest_ratio(const rc_level *level, const rc_periods *periods, int x, int y) {
-  rc_chart flat = rc_chart_flat(level->chart);
+/* The ratio nearest to 1 by which a patch so moved is source; 1 where there is none. */
+static float nearest_ratio(const rc_level *level, const rc_copy *moves, int count, int x, int y) {
   float best = WIDEST;
   size_t at;
-  for (int n = 0, count = move_count(periods); n < count; n++) {
-    if (n == count / 2) continue;
+  for (int n = 0; n < count; n++) {
     rc_place place =
-        rc_copy_place(&flat, move_by(periods, n), rc_level_x(level, x), rc_level_y(level, y));
+        rc_copy_place(&level->chart, moves[n], rc_level_x(level, x), rc_level_y(level, y));
     if (!rc_place_at(level, &place, &at) || level->room[at] <= RC_PATCH_RADIUS + 1) continue;
     float off = fmaxf(place.ratio, 1 / place.ratio);
     if (off < fmaxf(best, 1 / best)) best = place.ratio;
@@ -56,12 +54,12 @@ static float nearest_ratio(const rc_level *level, const rc_periods *periods, int
   return best == WIDEST ? 1 : best;
 }
 
-void rc_reach_periods(rc_level *level, const rc_periods *periods) {
+void rc_reach_moves(rc_level *level, const rc_copy *moves, int count) {
   for (int y = level->box.y0; y < level->box.y1; y++)
     for (int x = level->box.x0; x < level->box.x1; x++) {
       if (!rc_level_is_target(level, x, y)) continue;
       int c = level->classes[rc_level_at(level, x, y)];
-      float ratio = nearest_ratio(level, periods, x, y);
+      float ratio = nearest_ratio(level, moves, count, x, y);
       level->ranges.low[c] = fminf(level->ranges.low[c], ratio / REACH_BY);
       level->ranges.high[c] = fmaxf(level->ranges.high[c], ratio * REACH_BY);
     }

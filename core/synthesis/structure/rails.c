@@ -28,6 +28,8 @@
 #define MOST_STEP_OF_CLEAR_PX 1.f
 /* Lines leave the picture where they meet its end at 27 degrees or more. */
 #define LEAST_LEAVING .5f
+/* So many px of their level behind the hole are shorter than a run, and show no line. */
+#define STRIP_PX 32
 /* Where no line crosses the hole all directions are tried, 4 degrees apart. A texture runs along
  * the best if, moved by so many px of the coarsest level near the hole, it changes by less than
  * these parts of what it does moved across by up to twice as far: boards .03 to .14 and .06 to .35,
@@ -153,13 +155,14 @@ static bool scan(const rc_moves *m, rc_rails *best) {
          rc_moves_along(m, best->a, best->b, FAR_RUN_PX) < MOST_ALONG_FAR * most_across;
 }
 
-/* Whether what runs along the rails leads out of the picture where the hole does: no line crosses a
- * hole there. */
-static bool leaves_the_picture(const rc_chart *chart, const rc_mask *flags, rc_rails r) {
+/* Whether what runs along the rails leads out of the picture where the hole does, or no farther
+ * than strip px from there: no line is seen to cross a hole there. */
+static bool leaves_the_picture(const rc_chart *chart, const rc_mask *flags, int strip, rc_rails r) {
   rc_chart flat = rc_chart_flat(*chart);
   for (int y = 0; y < flags->height; y++)
     for (int x = 0; x < flags->width; x++) {
-      bool at_side = x == 0 || x == flags->width - 1, at_top = y == 0 || y == flags->height - 1;
+      bool at_side = x <= strip || x + strip >= flags->width - 1;
+      bool at_top = y <= strip || y + strip >= flags->height - 1;
       if (!(at_side || at_top) || !(*rc_flag(flags, x, y) & RC_TARGET)) continue;
       float px = (float)x - chart->x0, py = (float)y - chart->y0;
       rc_place next = rc_copy_place(&flat, (rc_copy){r.a, r.b, 0}, px, py);
@@ -215,7 +218,8 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
     along = median_of(chart, lines, *count);
   } else {
     rc_moves_set(&images[coarse], flags, here, true, NULL, m);
-    told = scan(m, &along) && leaves_the_picture(&here, flags, along);
+    int strip = (STRIP_PX << rc_lines_level(masks, levels)) >> coarse;
+    told = scan(m, &along) && leaves_the_picture(&here, flags, strip, along);
   }
   if (told) rc_moves_set(&images[coarse], flags, here, false, NULL, m);
   if (told && runs(m, along)) {
