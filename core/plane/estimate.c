@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "plane/belief.h"
+#include "plane/beyond.h"
 #include "plane/nearby.h"
 #include "plane/readings.h"
 
@@ -37,6 +38,14 @@
 /* Of two points that are both farther than about 75 degrees from the view axis one is often not the
  * plane's: boards run across, and posts stand on them. A third, in front, tells it with either. */
 #define FAR_POINT .25
+
+/* Where what lies around a hole beyond the horizon is like what lies before it: from the first of
+ * these parts on the horizon is doubted, from the second on nothing is believed. Of roads, piers,
+ * dunes and meadows 0 to .43, a wall above a road .5; where sand or a table went on behind a wrong
+ * one .98 and more. */
+#define SOME_ALIKE .8
+#define ALL_ALIKE .95
+#define DOUBT_OF_ALIKE .6
 
 #define GRID RC_COARSE_LEANS
 /* Planes whose horizons pass through a vanishing point. */
@@ -254,6 +263,16 @@ static recede_status find_best(rc_context *context, search *s) {
   return RECEDE_OK;
 }
 
+/* Of a hole that the horizon crosses, where sand goes on as sand. */
+static recede_status doubt_horizon(rc_context *context, const rc_image *image, const rc_mask *flags,
+                                   const recede_plane *plane, double *confidence) {
+  double alike;
+  RC_TRY(rc_alike_beyond(context, image, flags, plane, &alike));
+  double doubt = (alike - SOME_ALIKE) / (ALL_ALIKE - SOME_ALIKE);
+  *confidence *= 1 - DOUBT_OF_ALIKE * fmin(1, fmax(0, doubt));
+  return RECEDE_OK;
+}
+
 recede_status rc_estimate_plane(rc_context *context, const rc_image *image, const rc_mask *flags,
                                 double fov_deg, const double on[2], recede_plane *plane,
                                 double *confidence) {
@@ -277,6 +296,8 @@ recede_status rc_estimate_plane(rc_context *context, const rc_image *image, cons
     RC_TRY(rc_nearby_correct(context, &s->r.model[RC_FLAT], s->r.best_model == RC_RAISED, &lean,
                              confidence));
   rc_lean_normal(lean, plane->normal);
+  if (on && !s->r.model[RC_FLAT].chosen)
+    RC_TRY(doubt_horizon(context, image, flags, plane, confidence));
   rc_release(context, mark);
   return RECEDE_OK;
 }
