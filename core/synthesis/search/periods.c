@@ -91,6 +91,9 @@ static const bar by_joints = {.bases = 8,
 /* Of what is smaller patches see nearly two; what is so small by its joints is jittered stones. */
 #define LEAST_DUE_PX 7.f
 #define BESIDE_PX 4
+/* So much of what all vary by: what is plain is like itself any period off. Beside holes in what
+ * repeats .24 and more, in a table beside a striped carpet .003. */
+#define LEAST_BESIDE_VARIES .1
 /* A peak is a multiple of both that is off by no more. */
 #define MOST_OFF_PX 1.5
 
@@ -150,24 +153,29 @@ static bool find_base(const rc_correlation *c, const bar *b, const rc_peak *peak
 }
 
 /* Heaps that lie in rows, but not around the hole, are not due there: sources beside its box must
- * be like what is one period off, by what all vary by. */
+ * be like what is one period off, by what all vary by, and vary themselves. */
 static bool holds_beside(const rc_correlation *c, const bar *b, const rc_periods *periods) {
   const rc_level *level = c->level;
-  double off = 0, pairs = 0;
+  double off = 0, pairs = 0, sum = 0, square = 0, count = 0;
   for (int y = level->box.y0 - BESIDE_PX; y < level->box.y1 + BESIDE_PX; y++)
     for (int x = level->box.x0 - BESIDE_PX; x < level->box.x1 + BESIDE_PX; x++) {
       if (!rc_inside(level->width, level->height, x, y)) continue;
       size_t at = (size_t)y * (size_t)level->width + (size_t)x, to;
-      for (int n = 0; n < (periods->row ? 2 : 4) && level->room[at]; n++) {
+      if (!level->room[at]) continue;
+      double own = (double)c->trait[at];
+      sum += own, square += own * own, count++;
+      for (int n = 0; n < (periods->row ? 2 : 4); n++) {
         float sign = n % 2 ? 1.f : -1.f;
         rc_copy move = {sign * periods->base[n / 2].a, sign * periods->base[n / 2].b, 0.f};
         rc_place place = rc_copy_place(&c->flat, move, rc_level_x(level, x), rc_level_y(level, y));
         if (!rc_place_at(level, &place, &to) || !level->room[to]) continue;
-        double d = (double)c->trait[at] - (double)c->trait[to];
+        double d = own - (double)c->trait[to];
         off += d * d, pairs++;
       }
     }
-  return pairs > 0 && off / pairs <= b->most_beside * rc_correlation_variance(c);
+  double all = rc_correlation_variance(c);
+  return pairs > 0 && off / pairs <= b->most_beside * all &&
+         square / count - sum / count * (sum / count) >= LEAST_BESIDE_VARIES * all;
 }
 
 /* By all peaks that are near whole multiples of it: a px off each time is half a square soon. */
