@@ -292,6 +292,30 @@ static void moat_is_crossed(void) {
   task_clear(&t);
 }
 
+/* A table of light wood, a sheet of paper on it, and a striped carpet below. */
+static picture table_and_carpet(void) {
+  picture p = picture_new(400, 320, 1, RECEDE_U8);
+  for (int y = 0; y < 320; y++)
+    for (int x = 0; x < 400; x++) {
+      double wood = .68 + .05 * smooth_noise(x / 12., y, 1 / 3., 21) + .01 * noise_at(x, y, 22);
+      bool paper = x >= 250 && x < 370 && y >= 20 && y < 140;
+      double carpet = (x % 48 < 24 ? .05 : .95) + .02 * noise_at(x, y, 23);
+      picture_set(&p, x, y, 0, (float)(y >= 160 ? carpet : paper ? .9 : wood));
+    }
+  return p;
+}
+
+static bool is_paper(const picture *p, int x, int y) { return picture_get(p, x, y, 0) > .8f; }
+
+/* That the carpet repeats says nothing of a hole in the table: what is plain is like itself any
+ * period off. */
+static void carpets_do_not_stripe_tables(void) {
+  const area hole = {50, 30, 190, 130};
+  double paper = part_of(table_and_carpet, hole, 0, "orientation=frontal", 0, is_paper);
+  g_test_message("%.3f of the hole is paper", paper);
+  g_assert_cmpfloat(paper, <, .02);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   test_add_judged("/bland/flowers", flowers_go_on);
@@ -299,6 +323,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/bland/moat", moat_is_crossed);
   test_add_judged("/bland/patches", patches_are_copied);
   g_test_add_func("/bland/walls", walls_stay_out);
+  g_test_add_func("/bland/carpet", carpets_do_not_stripe_tables);
   g_test_add_func("/bland/people", people_stay_where_they_are);
   g_test_add_func("/bland/strangers", strangers_stay_where_they_are);
   g_test_add_func("/bland/small-hole", strangers_stay_beside_small_holes);
