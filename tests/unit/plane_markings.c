@@ -25,23 +25,31 @@ typedef struct scene {
   area hole;
 } scene;
 
-static paint painted(const scene *s, void (*make)(task *t, area hole)) {
-  double slant_deg = s->slant_deg, tilt_deg = s->tilt_deg, direction_deg = s->direction_deg;
-  area hole = s->hole;
-  cosine = cos(direction_deg * G_PI / 180), sine = sin(direction_deg * G_PI / 180);
-  picture truth =
-      picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, road, TEXEL_PX, slant_deg, tilt_deg);
-  task t = task_new(picture_copy(&truth), "surface=flat quality=draft");
-  t.params.slant_deg = slant_deg, t.params.tilt_deg = tilt_deg;
-  make(&t, hole);
+static picture truth_of(const scene *s) {
+  cosine = cos(s->direction_deg * G_PI / 180), sine = sin(s->direction_deg * G_PI / 180);
+  return picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, road, TEXEL_PX, s->slant_deg, s->tilt_deg);
+}
+
+/* Of the part judged of the hole. Clears truth. */
+static paint painted_in(const scene *s, picture *truth, void (*make)(task *t, area hole),
+                        area judged) {
+  task t = task_new(picture_copy(truth), "surface=flat quality=draft");
+  t.params.slant_deg = s->slant_deg, t.params.tilt_deg = s->tilt_deg;
+  make(&t, s->hole);
   task_succeeds(&t);
   task_assert_outside(&t);
-  paint p = task_paint(&t, &truth, hole);
+  paint p = task_paint(&t, truth, judged);
   task_clear(&t);
-  picture_clear(&truth);
-  g_test_message("slant %.0f, tilt %.0f, direction %.0f, hole at %d,%d: %.0f of %.0f px", slant_deg,
-                 tilt_deg, direction_deg, hole.x0, hole.y0, p.right, p.all);
+  picture_clear(truth);
+  g_test_message("slant %.0f, tilt %.0f, direction %.0f, hole at %d,%d: %.0f of %.0f px",
+                 s->slant_deg, s->tilt_deg, s->direction_deg, s->hole.x0, s->hole.y0, p.right,
+                 p.all);
   return p;
+}
+
+static paint painted(const scene *s, void (*make)(task *t, area hole)) {
+  picture truth = truth_of(s);
+  return painted_in(s, &truth, make, s->hole);
 }
 
 static double part_right_in(const scene *scenes, int count, void (*make)(task *t, area hole)) {
@@ -121,11 +129,52 @@ static void leave_the_picture(void) {
   g_assert_cmpfloat(sum, >, .7);
 }
 
+/* The row of the horizon, of tilt 0. */
+static double horizon_of(double slant_deg) {
+  return (HEIGHT - 1) / 2. - WIDTH / 2. / tan(25 * G_PI / 180) / tan(slant_deg * G_PI / 180);
+}
+
+/* A dark hedge stands on the floor behind the hole: no other end of the marking is seen. Judged is
+ * what is no narrower than a fifth of what it is at the hole's foot. */
+static paint painted_before_a_hedge(const scene *s) {
+  double horizon = horizon_of(s->slant_deg);
+  picture truth = truth_of(s);
+  area judged = s->hole;
+  judged.y0 = (int)ceil(horizon + (judged.y1 - horizon) / 5);
+  for (int y = 0; y < s->hole.y0; y++)
+    for (int x = 0; x < WIDTH; x++)
+      picture_set(&truth, x, y, 0, (float)(.1 + .15 * noise_at(x / 3, y / 3, 60)));
+  return painted_in(s, &truth, task_hole, judged);
+}
+
+/* Of one that recedes to something that stands on the floor only the near end is seen, here 4 to 50
+ * px wide. All of them ended there, at the hole's foot. */
+static void recede_to_a_hedge(void) {
+  static const struct receding {
+    scene scene;
+    double offset, wide;
+  } all[] = {
+      {{80, 0, 0, {240, 128, 400, 350}}, -1, 3},   {{80, 0, 0, {240, 128, 400, 350}}, 2, .4},
+      {{82, 0, 0, {200, 150, 400, 340}}, -1.5, 5}, {{82, 0, 0, {260, 150, 420, 360}}, 3, .4},
+      {{84, 0, 0, {240, 175, 420, 380}}, 2, 2},    {{84, 0, 0, {200, 175, 380, 380}}, -2, .3},
+  };
+  double sum = 0;
+  for (guint i = 0; i < G_N_ELEMENTS(all); i++) {
+    offset = all[i].offset, wide = all[i].wide;
+    paint p = painted_before_a_hedge(&all[i].scene);
+    sum += p.right / p.all / G_N_ELEMENTS(all);
+  }
+  offset = 0, wide = 1;
+  g_test_message("in the mean %.2f", sum);
+  g_assert_cmpfloat(sum, >, .75);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/markings/go-on", go_on);
   g_test_add_func("/markings/get-wider", get_wider);
   test_add_judged("/markings/get-narrower", get_narrower);
   test_add_judged("/markings/leave-the-picture", leave_the_picture);
+  test_add_judged("/markings/recede", recede_to_a_hedge);
   return g_test_run();
 }
