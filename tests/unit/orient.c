@@ -102,6 +102,51 @@ static void horizon_inside_the_picture(void) {
   g_free(q);
 }
 
+typedef void behind(int horizon, guint8 *gray);
+
+static void sky(int horizon, guint8 *gray) { (void)horizon, (void)gray; }
+
+/* What the floor shows in 40 rows, shuffled. */
+static void the_same(int horizon, guint8 *gray) {
+  int first = horizon + 15;
+  for (int y = 0; y < first; y++) {
+    int from = first + (int)(40 * chance(y, 0, 60)), shift = (int)(SIDE * chance(y, 1, 60));
+    for (int x = 0; x < SIDE; x++) gray[y * SIDE + x] = gray[from * SIDE + (x + shift) % SIDE];
+  }
+}
+
+/* Dark leaves. */
+static void hedge(int horizon, guint8 *gray) {
+  for (int y = 0; y < horizon + 6; y++)
+    for (int x = 0; x < SIDE; x++)
+      gray[y * SIDE + x] = (guint8)(20 + 60 * chance(x / 3, y / 3, 61));
+}
+
+/* How far a floor is believed whose horizon crosses the hole. */
+static double believed(double slant, behind *put) {
+  question *q = new_question();
+  int horizon = (int)(.5 * SIDE - .5 * SIDE / tan(25 * G_PI / 180) / tan(slant * G_PI / 180));
+  draw(BRICKS, slant, 0, .5 * SIDE, .9 * SIDE, q->gray);
+  put(horizon, q->gray);
+  put_hole(q, 152, horizon - 20, 80, SIDE - 40 - horizon);
+  g_assert_cmpint(ask(q), ==, RECEDE_OK);
+  double confidence = q->answer.confidence;
+  g_test_message("slant %.1f tilt %.1f of %.0f, confidence %.2f", q->answer.slant_deg,
+                 q->answer.tilt_deg, slant, confidence);
+  g_free(q);
+  return confidence;
+}
+
+/* Where a texture goes on beyond the horizon there is none: of confidence .67 to .74 until that was
+ * asked, now .27 to .30. */
+static void what_goes_on_has_no_horizon(void) {
+  for (int slant = 83; slant <= 84; slant++) {
+    g_assert_cmpfloat(believed(slant, the_same), <, RECEDE_CONFIDENCE_LOW);
+    g_assert_cmpfloat(believed(slant, sky), >, RECEDE_CONFIDENCE_LOW);
+    g_assert_cmpfloat(believed(slant, hedge), >, RECEDE_CONFIDENCE_LOW);
+  }
+}
+
 /* Hundreds of joints all run one way, and only the few lines that do not tell how far the plane
  * leans. */
 static void few_lines_tell_what_many_do_not(void) {
@@ -295,6 +340,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/orient/patchworks", patchworks_are_seldom_trusted);
   g_test_add_func("/orient/two-planes", two_planes_are_not_trusted);
   g_test_add_func("/orient/horizon-inside", horizon_inside_the_picture);
+  g_test_add_func("/orient/goes-on-beyond", what_goes_on_has_no_horizon);
   g_test_add_func("/orient/few-lines", few_lines_tell_what_many_do_not);
   g_test_add_func("/orient/posts", posts_on_boards_are_no_wall);
   g_test_add_func("/orient/path", a_path_before_a_wall_is_a_floor);
