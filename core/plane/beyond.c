@@ -8,6 +8,9 @@
 
 /* Less of the hole is the horizon's own error. */
 #define LEAST_CROSSED .005
+/* A horizon read too high has some sky before it: what lies on the plane is more than so far below,
+ * about the sine of the angle. */
+#define SURELY_ON .09
 /* Cells of so much of the hole's longer side, up to so far around it, each seen by its mean colour
  * and how far its brightness deviates. Fewer tell nothing. */
 #define CELL_OF_HOLE (1. / 24)
@@ -36,15 +39,17 @@ typedef struct view {
   const recede_plane *plane;
 } view;
 
-/* 1: the whole cell lies on the plane, -1: beyond; 0: on both sides, or not all of it is known. */
+/* 1: the whole cell lies on the plane, -1: beyond; 0: on both sides, too near to the horizon to
+ * say, or not all of it is known. */
 static int side_of(const view *v, int x0, int y0, int side) {
-  int on = 0;
+  int on = 0, beyond = 0;
   for (int y = y0; y < y0 + side; y++)
     for (int x = x0; x < x0 + side; x++) {
       if (!(*rc_flag(v->flags, x, y) & RC_KNOWN)) return 0;
-      on += recede_plane_w(v->plane, x, y) > 0;
+      double w = recede_plane_w(v->plane, x, y);
+      on += w > SURELY_ON, beyond += w <= 0;
     }
-  return on == side * side ? 1 : on ? 0 : -1;
+  return on == side * side ? 1 : beyond == side * side ? -1 : 0;
 }
 
 static cell look(const view *v, int x0, int y0, int side) {

@@ -1,5 +1,5 @@
-/* What crosses the hole among others that look like it: a joint beside others, slats beside slats.
- * Drawn ground. */
+/* What crosses the hole among others that look like it: a joint beside others, slats beside slats,
+ * boards between water. Drawn ground. */
 #include <math.h>
 
 #include "plane_scene.h"
@@ -109,9 +109,66 @@ static void slats_stay_upright(void) {
   g_assert_cmpfloat(sum, >, .83);
 }
 
+#define WATER_AND_JOINTS .34
+
+/* So many boards to each side of the middle, each of its own shade, lead away over dark water. */
+static int boards;
+
+static double deck(double u, double v, int k) {
+  int row = (int)floor(u);
+  double across = u - row, along = v / 9 + noise_at(row, 0, 20);
+  (void)k;
+  if (fabs(u) > boards)
+    return .25 + .08 * smooth_noise(u, v, .3, 50) + .04 * smooth_noise(u, v, 2, 51);
+  if (across < .1 || along - floor(along) < .03) return .1;
+  return .45 + .2 * noise_at((int)floor(along), row, 22) + .15 * smooth_noise(u * 9, v, .6, 21);
+}
+
+/* Of what boards there were in the hole. */
+static double part_of_boards(const task *t, const picture *truth, area a) {
+  double kept = 0, all = 0;
+  for (int y = a.y0; y < a.y1; y++)
+    for (int x = a.x0; x < a.x1; x++) {
+      if (picture_get(truth, x, y, 0) < WATER_AND_JOINTS) continue;
+      kept += picture_get(&t->result, x, y, 0) > WATER_AND_JOINTS, all++;
+    }
+  return kept / all;
+}
+
+/* Up to the picture's end: along the boards there are only such as are farther away, and smaller.
+ * Water came there, .45 of the boards were left, now .96. */
+static void boards_come_from_far_along(void) {
+  static const struct seen {
+    double slant_deg, board_px;
+    int boards, top;
+  } all[] = {{78, 14, 2, 180}, {78, 18, 2, 150}, {78, 10, 3, 180},
+             {80, 10, 2, 180}, {80, 14, 2, 180}, {82, 10, 2, 180}};
+  double sum = 0;
+  for (guint i = 0; i < G_N_ELEMENTS(all); i++) {
+    const struct seen *s = &all[i];
+    area filled = {110, s->top, 210, HEIGHT};
+    boards = s->boards;
+    picture truth =
+        picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, deck, s->board_px, s->slant_deg, 0);
+    task t = task_new(picture_copy(&truth), "quality=draft");
+    t.params.slant_deg = s->slant_deg;
+    task_hole(&t, filled);
+    task_succeeds(&t);
+    double part = part_of_boards(&t, &truth, filled);
+    g_test_message("slant %.0f, %d boards of %.0f px: %.3f", s->slant_deg, 2 * boards, s->board_px,
+                   part);
+    sum += part / G_N_ELEMENTS(all);
+    task_clear(&t);
+    picture_clear(&truth);
+  }
+  g_test_message("in the mean %.3f", sum);
+  g_assert_cmpfloat(sum, >, .8);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/crossed/joints", others_stay_where_they_are);
   test_add_judged("/lines/slats", slats_stay_upright);
+  test_add_judged("/lines/boards-far-along", boards_come_from_far_along);
   return g_test_run();
 }

@@ -171,7 +171,7 @@ static recede_status start_on_rails(rc_context *context, const rc_descent *e, in
                                     rc_workspace *scratch, rc_trial *best, double *own) {
   starts s = {first, first, first + count, NULL, 0};
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
-  rc_reach_moves(level, s.moves, s.move_count);
+  RC_TRY(rc_reach_moves(context, level, s.moves, s.move_count));
   RC_TRY(try_starts(context, e, &s, p, level, scratch, best, own));
   /* Where few had a copy before half of these must have: an empty start fits well. */
   double most = fmin(without + MOST_WITHOUT_COPY, .5 * (1 + without));
@@ -186,16 +186,18 @@ static recede_status keep_to_rails(rc_context *context, rc_descent *e, int count
   rc_pace p = {0, work_of(count, rc_iterations_at(e, e->level_count - 1))};
   starts s = {0, 0, count, NULL, 0};
   rc_trial best;
+  rc_ranges ranges = level->ranges;
   double own;
   RC_TRY(rc_boards_mark(context, &e->rails, e->level_count - 1, level));
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
-  rc_reach_moves(level, s.moves, s.move_count);
+  RC_TRY(rc_reach_moves(context, level, s.moves, s.move_count));
   e->on_rails = true;
   RC_TRY(try_starts(context, e, &s, &p, level, scratch, &best, &own));
   rc_release(context, mark);
   *kept = e->on_rails = without_copy(level) <= MOST_WITHOUT_KEPT;
+  if (!*kept) level->ranges = ranges;
   if (!*kept && level->board) RC_FREE(context, &level->board);
   return RECEDE_OK;
 }
@@ -206,7 +208,7 @@ static recede_status try_rails(rc_context *context, rc_descent *e, int first, in
                                rc_level *level, rc_workspace *scratch, double misfit) {
   rc_trial along, across;
   double own, own_across = INFINITY, without = without_copy(level);
-  rc_ranges ranges = level->ranges;
+  const rc_ranges ranges = level->ranges;
   int rows = e->rails.rows;
   RC_TRY(rc_trial_new(context, level, &along));
   RC_TRY(rc_trial_new(context, level, &across));
@@ -216,11 +218,12 @@ static recede_status try_rails(rc_context *context, rc_descent *e, int first, in
   if (rows)
     RC_TRY(
         start_on_rails(context, e, first, count, without, p, level, scratch, &across, &own_across));
-  e->rails.rows = 0, level->board = NULL;
+  const rc_ranges of_across = level->ranges;
+  e->rails.rows = 0, level->board = NULL, level->ranges = ranges;
   RC_TRY(start_on_rails(context, e, first, count, without, p, level, scratch, &along, &own));
   if (rows && own_across < FAVOUR_OF_BOARDS * own) {
     own = own_across;
-    e->rails.rows = rows, level->board = board;
+    e->rails.rows = rows, level->board = board, level->ranges = of_across;
     rc_trial_restore(level, &across);
   }
   e->on_rails = own < FAVOUR_OF_RAILS * misfit;
@@ -265,7 +268,7 @@ static recede_status try_periods(rc_context *context, rc_descent *e, int first, 
   RC_TRY(rc_trial_new(context, level, &by_periods));
   RC_TRY(rc_moves_by_periods(context, &e->periods, &s.moves, &s.move_count));
   level->chart.raised = false;
-  rc_reach_moves(level, s.moves, s.move_count);
+  RC_TRY(rc_reach_moves(context, level, s.moves, s.move_count));
   RC_TRY(try_starts(context, e, &s, p, level, scratch, &by_periods, &own));
   e->by_periods = own < favour_of_periods(&e->periods) * *misfit;
   if (e->by_periods)

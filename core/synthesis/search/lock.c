@@ -21,7 +21,8 @@
 #define MOST_TAKEN .25
 /* In place of a piece's own source another one's is no larger or smaller than this. */
 #define MOST_ENLARGED 3.f
-#define MOST_SHRUNK 10.f
+#define MOST_SHRUNK 6.f
+#define MOST_SHRUNK_RECEDING 10.f
 
 /* Nearly all that a sample counts lies so near, in px of the size that is wanted. */
 #define SAMPLED_PX 1
@@ -62,7 +63,8 @@ static bool may_be_taken(const track *t, rc_copy copy, bool own, int x, int y) {
   const rc_level *level = t->level;
   size_t source;
   rc_place place = rc_copy_place(&level->chart, copy, rc_level_x(level, x), rc_level_y(level, y));
-  if (!own && !(place.ratio > 1 / MOST_ENLARGED && place.ratio < MOST_SHRUNK)) return false;
+  float most_shrunk = t->line.recedes ? MOST_SHRUNK_RECEDING : MOST_SHRUNK;
+  if (!own && !(place.ratio > 1 / MOST_ENLARGED && place.ratio < most_shrunk)) return false;
   return rc_place_at(level, &place, &source) &&
          level->flags[source] & (t->sure ? RC_ALLOWED : RC_SOURCE) &&
          !(t->sure && t->finest && !may_be_laid(level, &place));

@@ -47,15 +47,19 @@ static float nearest_ratio(const rc_level *level, const rc_copy *moves, int coun
   for (int n = 0; n < count; n++) {
     rc_place place =
         rc_copy_place(&level->chart, moves[n], rc_level_x(level, x), rc_level_y(level, y));
-    if (!rc_place_at(level, &place, &at) || level->room[at] <= RC_PATCH_RADIUS + 1) continue;
+    if (!rc_place_at(level, &place, &at) || level->room[at] <= RC_PATCH_RADIUS + 1 ||
+        !(place.mismatch < RC_MOST_MISMATCH && place.mismatch > 1 / RC_MOST_MISMATCH))
+      continue;
     float off = fmaxf(place.ratio, 1 / place.ratio);
     if (off < fmaxf(best, 1 / best)) best = place.ratio;
   }
   return best == WIDEST ? 1 : best;
 }
 
-void rc_reach_moves(rc_level *level, const rc_copy *moves, int count) {
-  for (int y = level->box.y0; y < level->box.y1; y++)
+recede_status rc_reach_moves(rc_context *context, rc_level *level, const rc_copy *moves,
+                             int count) {
+  for (int y = level->box.y0; y < level->box.y1; y++) {
+    RC_TRY(rc_poll(context));
     for (int x = level->box.x0; x < level->box.x1; x++) {
       if (!rc_level_is_target(level, x, y)) continue;
       int c = level->classes[rc_level_at(level, x, y)];
@@ -63,6 +67,8 @@ void rc_reach_moves(rc_level *level, const rc_copy *moves, int count) {
       level->ranges.low[c] = fminf(level->ranges.low[c], ratio / REACH_BY);
       level->ranges.high[c] = fmaxf(level->ranges.high[c], ratio * REACH_BY);
     }
+  }
+  return RECEDE_OK;
 }
 
 recede_status rc_moves_by_periods(rc_context *context, const rc_periods *periods,

@@ -13,8 +13,8 @@ recede_status rc_periods_of_all(rc_context *context, const rc_image *images, con
                                 int levels, const rc_chart *chart, float gain, uint64_t key,
                                 rc_periods *periods);
 /* Widens the ranges of scale until they hold, of each target pixel, the source nearest in scale
- * that such a move leads to. */
-void rc_reach_moves(rc_level *level, const rc_copy *moves, int count);
+ * that such a move, by periods or along rails, leads to. */
+recede_status rc_reach_moves(rc_context *context, rc_level *level, const rc_copy *moves, int count);
 /* Moves by whole periods, the context's. */
 recede_status rc_moves_by_periods(rc_context *context, const rc_periods *periods,
                                   const rc_copy **moves, int *count);

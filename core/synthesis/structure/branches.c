@@ -21,10 +21,9 @@
 #define ACROSS 4
 /* A strip between the hole and the picture's end that is no longer along a line shows no run. */
 #define STRIP_PX 32
-/* Where the ground is so much narrower than at a line's end, little is seen of it, and between the
- * hole and the horizon often something stands. It is led as far as sources may be reduced. */
-#define FAR_AWAY .35f
-#define FARTHEST_AWAY (1 / 5.5f)
+/* Where the hole reaches to where the ground is so much narrower than at a line's end, little would
+ * be seen of it behind, and often something stands there. */
+#define FAR_AWAY (1 / 5.5f)
 /* So many ends, the strongest, are looked at. */
 #define MOST_ENDS 16
 
@@ -265,24 +264,24 @@ recede_status rc_branches_add(rc_context *context, const rc_image *image, const 
   return rc_poll(context);
 }
 
-/* How far inwards an end leaves the hole where the picture ends, or nearly so, or far away; else
- * infinite. */
+/* How far inwards an end leaves the hole where the picture ends, or nearly so, or gets too far away
+ * in it; else infinite. */
 static float way_out(const work *w, const loose *end, bool *recedes) {
   const rc_mask *flags = w->seen->flags;
-  float own = rc_chart_w(w->chart, end->x, end->y);
+  float far_away = FAR_AWAY * rc_chart_w(w->chart, end->x, end->y);
   int last = 0;
   *recedes = false;
   for (int way = 1;; way++) {
     float x = end->x - (float)way * end->out[0], y = end->y - (float)way * end->out[1];
-    float here = rc_chart_w(w->chart, x, y);
     if (!rc_inside(flags->width, flags->height, rc_floor(x + .5f), rc_floor(y + .5f)))
       return last ? (float)last : INFINITY;
-    if (is_target(flags, x, y) && here > FARTHEST_AWAY * own)
+    if (is_target(flags, x, y)) {
+      *recedes = rc_chart_w(w->chart, x, y) <= far_away;
+      if (*recedes) return last ? (float)last : INFINITY;
       last = way;
-    else if ((*recedes = here < FAR_AWAY * own))
-      return last ? (float)last : INFINITY;
-    else if (way - last > STRIP_PX)
+    } else if (way - last > STRIP_PX) {
       return INFINITY;
+    }
   }
 }
 

@@ -14,8 +14,8 @@ recede_status rc_branches_add(rc_context *context, const rc_image *image, const 
                               int exponent, const rc_chart *chart, rc_crossing lines[RC_ALL_LINES],
                               int *count);
 /* Adds clear ones that stand alone and leave the picture where the hole does, or behind it, too
- * near to be seen there: markings that lead to the viewer. Of these a is where they leave the
- * hole. The rest as above. */
+ * near to be seen there: markings that lead to the viewer; or that get too narrow to be seen in the
+ * hole, as those that lead to the horizon. Of these a is there. The rest as above. */
 recede_status rc_leaving_add(rc_context *context, const rc_image *image, const rc_mask *mask,
                              int exponent, const rc_chart *chart, rc_crossing lines[RC_MOST_LINES],
                              int *count);

@@ -77,7 +77,8 @@ float rc_crossing_part(const rc_chart *chart, const rc_crossing *line, float n) 
 
 int rc_crossing_piece(const rc_chart *chart, const rc_crossing *line, float part) {
   float times = narrowing(chart, line), inside = fminf(fmaxf(part, 0), .999f);
-  return (int)(inside / (times + inside * (1 - times)) * (float)line->pieces);
+  int piece = (int)(inside / (times + inside * (1 - times)) * (float)line->pieces);
+  return piece < line->pieces ? piece : line->pieces - 1;
 }
 
 static bool is_no_faint_one(const rc_crossing *line) { return !line->faint; }

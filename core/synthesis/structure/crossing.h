@@ -30,10 +30,10 @@ typedef struct rc_crossing {
   bool alone;       /* hardly any parallel to it looks the same */
   bool faint;       /* it is known only by what tells two textures apart */
   bool ends_inside; /* at a */
-  bool leaves;      /* and that is at the picture's end, or too near to see a run of it behind, */
-  bool recedes;     /* or far away: its pieces are equally long in the plane */
-  bool band;        /* it is wide, and hardly anything at the hole's border is as strong */
-  float axis[3];    /* the weights of colours it was seen by */
+  bool leaves;   /* and that is at the picture's end, or too near to see a run of it behind, or */
+  bool recedes;  /* too far away to be seen: its pieces are equally long in the plane */
+  bool band;     /* it is wide, and hardly anything at the hole's border is as strong */
+  float axis[3]; /* the weights of colours it was seen by */
   /* How far it reaches to its left and right, px where w = 1; 0 where that is not told. */
   float reach_px[2];
   int pieces;

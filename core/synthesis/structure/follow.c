@@ -75,6 +75,7 @@ static const struct way {
 /* What recedes has one way: near the picture's end a run may be no longer than a fiftieth of what
  * it shows of the plane. */
 static const struct way receding = {10.f, RC_MOST_PIECES, 9, true};
+#define MOST_NARROWED 10.f
 /* It does where w at one end is so many times that at the other; what lies at the horizon itself,
  * where it is less than that (the hole has about 1), does not. */
 #define LEAST_NEARER 1.5f
@@ -181,7 +182,7 @@ static bool straight_source(const frame *f, float split, float t, float *x, floa
   return !place.beyond && place.ratio < f->most_reduced && place.ratio > 1 / f->most_magnified;
 }
 
-/* A piece's, px. */
+/* Half a piece's length in the picture, px. */
 static float half_of(const frame *f, int piece) {
   if (!f->line->recedes) return f->length / (float)(2 * f->line->pieces);
   float from = rc_crossing_part(f->chart, f->line, (float)piece);
@@ -261,7 +262,8 @@ static bool measure_clean(const frame *f, rc_clean *clean) {
 /* How many times w at one end that at the other is; INFINITY at the horizon. */
 static float nearer(const rc_chart *chart, const rc_crossing *line) {
   float a = rc_chart_w(chart, line->ax, line->ay), b = rc_chart_w(chart, line->bx, line->by);
-  return fminf(a, b) > LEAST_W ? fmaxf(a, b) / fminf(a, b) : INFINITY;
+  float least_w = line->recedes ? 0 : LEAST_W;
+  return fminf(a, b) > least_w ? fmaxf(a, b) / fminf(a, b) : INFINITY;
 }
 
 /* Where something crosses the line beside the hole, sources farther along it. */
@@ -314,6 +316,8 @@ static bool follow_one_way(const rc_seen *picture, const rc_chart *chart, int wi
     rc_straighten(&f.ruler, &own_b, line);
     set_frame(&f);
   }
+  if (line->recedes && nearer(chart, line) > MOST_NARROWED)
+    return false; /* turned to the horizon */
   if ((!leaves && !goes_on(&f, -1, line->ax, line->ay, &own_a)) ||
       !goes_on(&f, 1, line->bx, line->by, &own_b))
     return false;

@@ -1,7 +1,6 @@
 #include "synthesis/structure/lines.h"
 
 #include <math.h>
-
 #include <string.h>
 
 #include "base/memory.h"

@@ -203,8 +203,8 @@ static bool has_marking(const rc_crossing *lines, int count) {
 }
 
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
-                            int levels, const rc_chart *chart, bool may_repeat, rc_crossing *lines,
-                            int *count, rc_rails *rails) {
+                            int levels, int from, const rc_chart *chart, bool may_repeat,
+                            rc_crossing *lines, int *count, rc_rails *rails) {
   int coarse = levels - 1, fine = coarse > FINER_BY ? coarse - FINER_BY : 0;
   const rc_mask *flags = &masks[coarse];
   rc_chart here = rc_chart_coarser(*chart, coarse);
@@ -218,7 +218,7 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
     along = median_of(chart, lines, *count);
   } else {
     rc_moves_set(&images[coarse], flags, here, true, NULL, m);
-    int strip = (STRIP_PX << rc_lines_level(masks, levels)) >> coarse;
+    int strip = (STRIP_PX << from) >> coarse;
     told = scan(m, &along) && leaves_the_picture(&here, flags, strip, along);
   }
   if (told) rc_moves_set(&images[coarse], flags, here, false, NULL, m);

@@ -43,13 +43,13 @@ rc_copy rc_copy_of_move(const rc_chart *chart, float x, float y, float a, float 
 rc_copy rc_copy_on_rails(const rc_rails *rails, const rc_chart *chart, float tolerance, float x,
                          float y, float to_x, float to_y);
 
-/* From the lines that cross the hole or, where none does and it reaches the picture's end, from how
- * the texture beside it changes in all directions; sharpened by how alike the texture is along
- * them. may_repeat: where, beside the hole, it repeats, only lone lines stay. images
- * and masks: the pyramid's levels, finest first; chart: of the finest. */
+/* From the lines that cross the hole or, where none does and it nearly reaches the picture's end,
+ * from how the texture beside it changes in all directions; sharpened by how alike the texture is
+ * along them. may_repeat: where, beside the hole, it repeats, only lone lines stay. images and
+ * masks: the pyramid's levels, finest first; from: that of the lines; chart: of the finest. */
 recede_status rc_rails_find(rc_context *context, const rc_image *images, const rc_mask *masks,
-                            int levels, const rc_chart *chart, bool may_repeat, rc_crossing *lines,
-                            int *count, rc_rails *rails);
+                            int levels, int from, const rc_chart *chart, bool may_repeat,
+                            rc_crossing *lines, int *count, rc_rails *rails);
 
 /* Whether the texture runs along the rails on both sides of the boundary, px of the finest level.
  */
