@@ -209,13 +209,15 @@ static recede_status find_due(rc_context *context, const rc_problem *problem, rc
   return RECEDE_OK;
 }
 
-/* Two textures in the hole that no line tells apart, or of which one has two edges. */
+/* Two textures in the hole that no line tells apart, or of which one has two edges. Those that run
+ * by their lines are boards; by what lies beside the hole alone a deck runs beside water, too. */
 static recede_status find_regions(rc_context *context, rc_descent *e) {
   int last = e->level_count - 1, chords;
   rc_regions regions;
   bool two;
   e->sides.px = 1;
-  if (!e->params->engine_regions || e->due || rc_runs(&e->rails)) return RECEDE_OK;
+  bool boards = rc_runs(&e->rails) && e->line_count;
+  if (!e->params->engine_regions || e->due || boards) return RECEDE_OK;
   rc_chart chart = rc_chart_coarser(e->chart, last);
   RC_TRY(
       rc_regions_find(context, &e->images[last], &e->flags[last], &chart, &regions, &two, &chords));

@@ -92,8 +92,8 @@ static const bar by_joints = {.bases = 8,
 #define LEAST_DUE_PX 7.f
 #define BESIDE_PX 4
 /* So much of what all vary by: what is plain is like itself any period off. Beside holes in what
- * repeats .24 and more, in a table beside a striped carpet .003. */
-#define LEAST_BESIDE_VARIES .1
+ * repeats .24 and more, of windows .08, in a table beside a striped carpet .003. */
+#define LEAST_BESIDE_VARIES .03
 /* A peak is a multiple of both that is off by no more. */
 #define MOST_OFF_PX 1.5
 
