@@ -8,8 +8,7 @@
 
 /* Which part of what lies around the hole (RC_TARGET) beyond the horizon looks like what lies
  * around it on the plane: 0..1. 0, too, where the horizon does not cross the hole, or too little is
- * seen.
- */
+ * seen. */
 recede_status rc_alike_beyond(rc_context *context, const rc_image *image, const rc_mask *flags,
                               const recede_plane *plane, double *part);
 

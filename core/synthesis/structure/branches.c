@@ -19,11 +19,9 @@
 /* And across, px. */
 #define ACROSS_STEP_PX .5f
 #define ACROSS 4
-/* A strip between the hole and the picture's end that is no longer along a line shows no run. */
-#define STRIP_PX 32
 /* Where the hole reaches to where the ground is so much narrower than at a line's end, little would
  * be seen of it behind, and often something stands there. */
-#define FAR_AWAY (1 / 5.5f)
+#define FAR_AWAY_TIMES 5.5f
 /* So many ends, the strongest, are looked at. */
 #define MOST_ENDS 16
 
@@ -268,7 +266,7 @@ recede_status rc_branches_add(rc_context *context, const rc_image *image, const 
  * in it; else infinite. */
 static float way_out(const work *w, const loose *end, bool *recedes) {
   const rc_mask *flags = w->seen->flags;
-  float far_away = FAR_AWAY * rc_chart_w(w->chart, end->x, end->y);
+  float far_away = rc_chart_w(w->chart, end->x, end->y) / FAR_AWAY_TIMES;
   int last = 0;
   *recedes = false;
   for (int way = 1;; way++) {
@@ -279,7 +277,7 @@ static float way_out(const work *w, const loose *end, bool *recedes) {
       *recedes = rc_chart_w(w->chart, x, y) <= far_away;
       if (*recedes) return last ? (float)last : INFINITY;
       last = way;
-    } else if (way - last > STRIP_PX) {
+    } else if (way - last > RC_STRIP_PX) {
       return INFINITY;
     }
   }
@@ -308,19 +306,8 @@ static bool lies_along_the_border(const rc_mask *flags, const rc_crossing *c) {
 }
 
 static bool is_near_the_end(const rc_mask *mask, rc_box hole) {
-  return hole.x0 <= STRIP_PX || hole.y0 <= STRIP_PX || hole.x1 + STRIP_PX >= mask->width ||
-         hole.y1 + STRIP_PX >= mask->height;
-}
-
-/* Whether any line through it could get so much narrower. */
-static bool recedes_in(const rc_chart *chart, rc_box hole) {
-  float least = INFINITY, most = -INFINITY;
-  for (int corner = 0; corner < 4; corner++) {
-    float w = rc_chart_w(chart, (float)(corner & 1 ? hole.x1 : hole.x0),
-                         (float)(corner & 2 ? hole.y1 : hole.y0));
-    least = fminf(least, w), most = fmaxf(most, w);
-  }
-  return least < FAR_AWAY * most;
+  return hole.x0 <= RC_STRIP_PX || hole.y0 <= RC_STRIP_PX || hole.x1 + RC_STRIP_PX >= mask->width ||
+         hole.y1 + RC_STRIP_PX >= mask->height;
 }
 
 recede_status rc_leaving_add(rc_context *context, const rc_image *image, const rc_mask *mask,
@@ -331,7 +318,8 @@ recede_status rc_leaving_add(rc_context *context, const rc_image *image, const r
   rc_ends ends;
   int before = *count;
   rc_box hole = rc_box_of(mask, RC_TARGET);
-  if (!(is_near_the_end(mask, hole) || recedes_in(&here, hole)) || *count == RC_MOST_LINES)
+  if (!(is_near_the_end(mask, hole) || rc_narrows_in(&here, hole, FAR_AWAY_TIMES)) ||
+      *count == RC_MOST_LINES)
     return RECEDE_OK;
   const float *axis = rc_brightness_axis(image);
   rc_block *mark = rc_mark(context);

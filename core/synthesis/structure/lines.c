@@ -293,15 +293,14 @@ static recede_status find_crossed(rc_context *context, rc_seen *seen,
   return RECEDE_OK;
 }
 
-/* Whether what leads away from the viewer is much narrower at one end of the hole. */
-static bool get_narrower(const rc_chart *chart, const rc_box *hole) {
+bool rc_narrows_in(const rc_chart *chart, rc_box hole, float times) {
   float least = INFINITY, most = 0;
   for (int k = 0; k < 4; k++) {
-    int x = k & 1 ? hole->x0 : hole->x1, y = k & 2 ? hole->y0 : hole->y1;
+    int x = k & 1 ? hole.x0 : hole.x1, y = k & 2 ? hole.y0 : hole.y1;
     float w = rc_chart_w(chart, (float)x, (float)y);
     least = fminf(least, w), most = fmaxf(most, w);
   }
-  return most > LEAST_NARROWING * least;
+  return most > times * least;
 }
 
 recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc_mask *mask,
@@ -315,7 +314,7 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
   rc_box hole = rc_box_of(mask, RC_TARGET);
   int reach_px = rc_longer_side(hole);
   RC_TRY(rc_see(context, image, mask, axis, &seen));
-  if (get_narrower(&here, &hole)) seen.narrows = &here;
+  if (rc_narrows_in(&here, hole, LEAST_NARROWING)) seen.narrows = &here;
   RC_TRY(rc_lines_at(context, &seen, false, lines, count));
   RC_TRY(find_crossed(context, &seen, lines, count));
   if (corners) rc_crossings_keep_corners(mask, lines, count);

@@ -36,4 +36,12 @@ recede_status rc_lines_find(rc_context *context, const rc_image *image, const rc
                             int exponent, bool corners, const rc_chart *chart,
                             const rc_copy periods[2], rc_crossing lines[RC_MOST_LINES], int *count);
 
+/* A strip between the hole and the picture's end that is no longer along a line, px of the lines'
+ * level, shows no run of it. */
+#define RC_STRIP_PX 32
+
+/* Whether what leads away from the viewer may be more than so many times as narrow at one end of
+ * the hole's box as at the other. chart: of the same level. */
+bool rc_narrows_in(const rc_chart *chart, rc_box hole, float times);
+
 #endif

@@ -28,8 +28,6 @@
 #define MOST_STEP_OF_CLEAR_PX 1.f
 /* Lines leave the picture where they meet its end at 27 degrees or more. */
 #define LEAST_LEAVING .5f
-/* So many px of their level behind the hole are shorter than a run, and show no line. */
-#define STRIP_PX 32
 /* Where no line crosses the hole all directions are tried, 4 degrees apart. A texture runs along
  * the best if, moved by so many px of the coarsest level near the hole, it changes by less than
  * these parts of what it does moved across by up to twice as far: boards .03 to .14 and .06 to .35,
@@ -218,7 +216,7 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
     along = median_of(chart, lines, *count);
   } else {
     rc_moves_set(&images[coarse], flags, here, true, NULL, m);
-    int strip = (STRIP_PX << from) >> coarse;
+    int strip = (RC_STRIP_PX << from) >> coarse;
     told = scan(m, &along) && leaves_the_picture(&here, flags, strip, along);
   }
   if (told) rc_moves_set(&images[coarse], flags, here, false, NULL, m);
