@@ -133,6 +133,8 @@ static const recede_param_info table[] = {
     STAGE("engine-tracks", engine_tracks,
           "lead faint bands of tone that run along the plane through the hole"),
     STAGE("engine-dashes", engine_dashes, "continue rows of dashes, and copy them nowhere else"),
+    STAGE("engine-standing", engine_standing,
+          "copy near the horizon upright where things stand there"),
     STAGE("engine-texture", engine_texture,
           "coarse levels compare the finer detail too, by strength and direction"),
     STAGE("engine-whole", engine_whole, "few whole copies start what lines cross (boards always)"),

@@ -5,7 +5,8 @@
  * so scale, flattening, shear and converging lines come right by themselves.
  * Raised: an upright similarity X' = r X + t of things that stand up from the plane, r the ratio of
  * scales in steps of 2^(1/8), so that neighbours can share it; r = 1 is a move by whole pixels.
- * Along lines both are exact. */
+ * Along lines both are exact. Near the horizon things that stand hide a plane that is flat: there
+ * copies may be raised ones, too. */
 #ifndef RECEDE_SYNTHESIS_COPY_H
 #define RECEDE_SYNTHESIS_COPY_H
 
@@ -24,6 +25,7 @@ typedef struct rc_chart {
   float lx, ly;
   float x0, y0; /* where X = Y = 0, in the level's px */
   bool raised;
+  float standing_w; /* of a flat one: where w is less copies are raised; 0 = nowhere */
 } rc_chart;
 
 /* w at a px of the level: 0 and less beyond the horizon. */
@@ -31,9 +33,14 @@ static inline float rc_chart_w(const rc_chart *chart, float x, float y) {
   return 1.f + chart->lx * (x - chart->x0) + chart->ly * (y - chart->y0);
 }
 
+/* Whether copies are raised at (x, y), relative to the chart's origin. */
+static inline bool rc_chart_stands(const rc_chart *chart, float x, float y) {
+  return chart->raised || 1.f + chart->lx * x + chart->ly * y < chart->standing_w;
+}
+
 /* The same for copies within the plane, as which moves and directions are told. */
 static inline rc_chart rc_chart_flat(rc_chart chart) {
-  chart.raised = false;
+  chart.raised = false, chart.standing_w = 0.f;
   return chart;
 }
 
@@ -51,7 +58,7 @@ static inline bool rc_same_copy(rc_copy p, rc_copy q) {
 static inline rc_place rc_copy_place(const rc_chart *chart, rc_copy copy, float x, float y) {
   rc_place place;
   float w = 1.f + chart->lx * x + chart->ly * y;
-  if (chart->raised) {
+  if (copy.r > 0.f) {
     place.x = copy.r * x + copy.a;
     place.y = copy.r * y + copy.b;
     float there = 1.f + chart->lx * place.x + chart->ly * place.y;
@@ -72,7 +79,7 @@ static inline rc_place rc_copy_place(const rc_chart *chart, rc_copy copy, float 
 /* dX'/dX at a place, row by row: (xx, xy; yx, yy). */
 static inline void rc_copy_jacobian(const rc_chart *chart, rc_copy copy, const rc_place *place,
                                     float jacobian[4]) {
-  if (chart->raised) {
+  if (copy.r > 0.f) {
     jacobian[0] = jacobian[3] = copy.r;
     jacobian[1] = jacobian[2] = 0.f;
     return;
@@ -110,7 +117,8 @@ static inline rc_copy rc_copy_between(const rc_chart *chart, float x, float y, f
                                       float to_y) {
   float w = 1.f + chart->lx * x + chart->ly * y;
   float there = 1.f + chart->lx * to_x + chart->ly * to_y;
-  if (!chart->raised) return (rc_copy){to_x / there - x / w, to_y / there - y / w, 0.f};
+  if (!chart->raised && !(w < chart->standing_w))
+    return (rc_copy){to_x / there - x / w, to_y / there - y / w, 0.f};
   float r = rc_scale_step(there / w);
   if (r == 1.f) return (rc_copy){rc_round(to_x - x), rc_round(to_y - y), 1.f};
   return (rc_copy){to_x - r * x, to_y - r * y, r};
@@ -120,7 +128,8 @@ static inline rc_copy rc_copy_between(const rc_chart *chart, float x, float y, f
  * raised copy of this scale keeps each line through the vanishing point of the move where it is. */
 static inline rc_copy rc_copy_exact(const rc_chart *chart, float x, float y, float to_x,
                                     float to_y) {
-  if (!chart->raised) return rc_copy_between(chart, x, y, to_x, to_y);
+  rc_chart flat = rc_chart_flat(*chart);
+  if (!chart->raised) return rc_copy_between(&flat, x, y, to_x, to_y);
   float r = (1.f + chart->lx * to_x + chart->ly * to_y) / (1.f + chart->lx * x + chart->ly * y);
   return (rc_copy){to_x - r * x, to_y - r * y, r};
 }

@@ -13,6 +13,7 @@
 #include "image/tone.h"
 #include "synthesis/composition/compose.h"
 #include "synthesis/composition/detail.h"
+#include "synthesis/kinds.h"
 #include "synthesis/search/descent.h"
 #include "synthesis/search/effort.h"
 #include "synthesis/search/lock.h"
@@ -30,7 +31,6 @@
 #include "synthesis/structure/gauge.h"
 #include "synthesis/structure/regions.h"
 #include "synthesis/structure/tracks.h"
-#include "synthesis/surface.h"
 
 /* The coarsest hole is at least this far across: one level too many breaks regular patterns. */
 #define COARSEST_HOLE_PX 18
@@ -38,12 +38,6 @@
  * in source. */
 #define LEAST_LEVEL_PX 48
 #define COARSEST_SOURCE_PX 24
-/* The surface is judged on a picture of about this width. */
-#define SURFACE_LONGEST_PX 1100
-/* Raised when it is likely: most flat textures measure .4 .. 1.2 (their contrast within a texel
- * leans less than they do), stones 0 .. .1, an old pier's boards .15 .. .2. With nothing to lean
- * both maps are the same, and the raised one keeps to whole pixels but along lines. */
-#define LEAN_OF_RAISED .32
 /* The light's drift is that between sources of the hole's own scales and a little more. With the
  * sky in it a road gets blue. */
 #define SCALES_BESIDE 1.3
@@ -58,7 +52,7 @@ static rc_chart chart_of(const rc_problem *problem, bool raised) {
   double y0 = (problem->target.y0 + problem->target.y1 - 1) / 2.;
   double square = line->a * line->a + line->b * line->b, excess = rc_w(line, x0, y0) - 1;
   if (square > 1e-16) x0 -= excess * line->a / square, y0 -= excess * line->b / square;
-  return (rc_chart){(float)line->a, (float)line->b, (float)x0, (float)y0, raised};
+  return (rc_chart){(float)line->a, (float)line->b, (float)x0, (float)y0, raised, 0.f};
 }
 
 static rc_band own_scales(const rc_problem *problem) {
@@ -108,23 +102,6 @@ static float byte_gain(const rc_image *residual, const rc_mask *flags) {
   }
   double deviation = count > 0 ? sqrt(square / count) : 0;
   return deviation > 1e-9 ? (float)(127 / (DEVIATIONS * deviation)) : 1.f;
-}
-
-/* Leaves *raised as it is where nothing can be told. */
-static recede_status choose_surface(rc_context *context, const rc_problem *problem,
-                                    const rc_descent *e, bool *raised) {
-  int exponent = 0;
-  double lean, error = 0;
-  if (e->params->surface != RECEDE_SURFACE_AUTO) {
-    *raised = e->params->surface == RECEDE_SURFACE_RAISED;
-    return RECEDE_OK;
-  }
-  while (exponent + 1 < e->level_count && e->images[exponent].width > SURFACE_LONGEST_PX)
-    exponent++;
-  RC_TRY(rc_measure_lean(context, problem, &e->images[exponent], &e->flags[exponent], exponent,
-                         &lean, &error));
-  if (!isnan(lean)) *raised = lean + error < LEAN_OF_RAISED;
-  return RECEDE_OK;
 }
 
 static void drop_new_dashes(const rc_dash_rows *dashes, int before, rc_descent *e) {
@@ -339,13 +316,15 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   rc_block *pyramid = rc_mark(context);
   RC_TRY(build_pyramid(context, problem, filled, &e));
   RC_TRY(find_dashes(context, problem, &e, &dashes));
-  RC_TRY(choose_surface(context, problem, &e, &raised));
+  RC_TRY(rc_choose_surface(context, problem, e.images, e.flags, e.level_count, params->surface,
+                           &raised));
   RC_TRY(find_due(context, problem, &e));
   if (params->engine_alike && !problem->synthesis && !e.due)
     RC_TRY(keep_alike(context, problem, &band, &tone, filled, pyramid, &e));
   e.gain = byte_gain(filled, &problem->flags);
   /* Again, for it is the texture's that counts; what is alike may be too little to tell. */
-  RC_TRY(choose_surface(context, problem, &e, &raised));
+  RC_TRY(rc_choose_surface(context, problem, e.images, e.flags, e.level_count, params->surface,
+                           &raised));
   e.chart = chart_of(problem, raised);
   if (rc_runs(&known->rails)) {
     e.rails = rc_rails_in_chart(known, &e.chart);
@@ -378,6 +357,10 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   /* Where there are two sides no tracks are looked for. */
   if (params->engine_boundary && !e.due && !rc_runs(&e.rails))
     rc_boundary_of_band(&e.chart, e.lines, e.line_count, &e.sides);
+  /* What comes again or runs along boards shows itself up to the horizon. */
+  if (params->engine_standing && params->surface == RECEDE_SURFACE_AUTO && !e.chart.raised &&
+      !problem->synthesis && !e.due && !rc_runs(&e.rails))
+    RC_TRY(rc_find_standing(context, problem, e.images, e.flags, e.level_count, &e.chart));
   rc_rails found = e.rails;
   RC_TRY(rc_descend(context, &e, &finest));
   RC_TRY(rc_dash_rows_lay(context, &dashes, &finest));

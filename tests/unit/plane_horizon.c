@@ -85,9 +85,91 @@ static void thin_haze_goes_on(void) {
   g_assert_cmpfloat(with, <, .5 * without);
 }
 
+/* A street's end: fronts of houses of many widths and greys, each down to where it stands. */
+typedef struct street {
+  double slant_deg, tilt_deg;
+  double foot_px; /* below the horizon, of the houses that reach lowest */
+} street;
+
+#define STREET_WIDTH 480
+#define STREET_HEIGHT 360
+#define WINDOW_PX 9
+
+/* Across the tilt from the middle, and below the horizon, px. */
+static void street_place(const street *s, double x, double y, double *across, double *below) {
+  double turn = s->tilt_deg * G_PI / 180, focal = STREET_WIDTH / 2. / tan(25 * G_PI / 180);
+  double px = x - (STREET_WIDTH - 1) / 2., py = y - (STREET_HEIGHT - 1) / 2.;
+  *across = px * cos(turn) + py * sin(turn);
+  *below = -px * sin(turn) + py * cos(turn) + focal / tan(s->slant_deg * G_PI / 180);
+}
+
+static picture street_picture(const street *s) {
+  picture p = picture_of_plane(STREET_WIDTH, STREET_HEIGHT, 1, RECEDE_U8, grains, 6, s->slant_deg,
+                               s->tilt_deg);
+  for (int y = 0; y < STREET_HEIGHT; y++)
+    for (int x = 0; x < STREET_WIDTH; x++) {
+      double across, below;
+      street_place(s, x, y, &across, &below);
+      int front = (int)floor(across / WINDOW_PX);
+      if (below < s->foot_px * (.7 + .3 * noise_at(front / 3, 0, 7)))
+        picture_set(&p, x, y, 0, (float)(.1 + .8 * noise_at(front, 1, 7)));
+    }
+  return p;
+}
+
+static bool in_street_hole(const street *s, int x, int y, double *below) {
+  double across;
+  street_place(s, x, y, &across, below);
+  return *below > 2 && hypot((across - 70) / 55, (*below - 25) / 35) < 1;
+}
+
+/* Of the squares of gradients in the hole, from below the horizon to where all houses stand: the
+ * part of those across upright edges. */
+static double upright_part(const street *s, const picture *p) {
+  double turn = s->tilt_deg * G_PI / 180, upright = 0, all = 0, below;
+  for (int y = 1; y + 1 < STREET_HEIGHT; y++)
+    for (int x = 1; x + 1 < STREET_WIDTH; x++) {
+      if (!in_street_hole(s, x, y, &below) || below < 4 || below > .6 * s->foot_px) continue;
+      double gx = (double)picture_get(p, x + 1, y, 0) - (double)picture_get(p, x - 1, y, 0);
+      double gy = (double)picture_get(p, x, y + 1, 0) - (double)picture_get(p, x, y - 1, 0);
+      double across = gx * cos(turn) + gy * sin(turn), along = gy * cos(turn) - gx * sin(turn);
+      all += across * across + along * along;
+      if (fabs(along) < .45 * fabs(across)) upright += across * across + along * along;
+    }
+  g_assert_cmpfloat(all, >, 1);
+  return upright / all;
+}
+
+/* As a part of the truth's. */
+static double filled_upright(const street *s, const char *settings) {
+  task t = task_new(street_picture(s), settings);
+  double truth = upright_part(s, &t.image), below;
+  t.params.slant_deg = s->slant_deg, t.params.tilt_deg = s->tilt_deg;
+  for (int y = 0; y < STREET_HEIGHT; y++)
+    for (int x = 0; x < STREET_WIDTH; x++)
+      if (in_street_hole(s, x, y, &below)) picture_set(&t.mask, x, y, 0, 1);
+  task_succeeds(&t);
+  double part = upright_part(s, &t.result) / truth;
+  g_test_message("slant %.0f, tilt %.0f, %s: %.2f of %.2f", s->slant_deg, s->tilt_deg, settings,
+                 part, truth);
+  task_clear(&t);
+  return part;
+}
+
+/* Where the plane is seen so flat that what stands on it hides it, copies within it would lay
+ * houses and cars down. */
+static void what_stands_stays_upright(void) {
+  static const street streets[] = {{85, 0, 40}, {84, 25, 50}, {86, 90, 40}, {85, -10, 60}};
+  for (int i = 0; i < (int)G_N_ELEMENTS(streets); i++) {
+    g_assert_cmpfloat(filled_upright(&streets[i], "surface=auto"), >, .6);
+    g_assert_cmpfloat(filled_upright(&streets[i], "surface=auto engine-standing=0"), <, .2);
+  }
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   test_add_judged("/horizon/haze", haze_goes_on);
+  test_add_judged("/horizon/standing", what_stands_stays_upright);
   g_test_add_func("/horizon/thin", thin_haze_goes_on);
   return g_test_run();
 }

@@ -71,7 +71,7 @@ static bool copy_value(const composition *c, rc_copy copy, int x, int y, float *
   const rc_chart *chart = &c->level->chart;
   float at_x = rc_level_x(c->level, x), at_y = rc_level_y(c->level, y), scale = 1.f;
   rc_place place = rc_copy_place(chart, copy, at_x, at_y);
-  float across = place.ratio, along = chart->raised ? across : across * across;
+  float across = place.ratio, along = copy.r > 0.f ? across : across * across;
   size_t source;
   bool known = rc_place_at(c->level, &place, &source) && is_known(c->level, source);
   int mip = 0;
@@ -79,7 +79,7 @@ static bool copy_value(const composition *c, rc_copy copy, int x, int y, float *
   float wanted = along * scale + TAPS_ROUND; /* NaN where the copy leads beyond the horizon */
   int taps = !(wanted >= 1.f) ? 1 : wanted < MOST_TAPS ? (int)wanted : MOST_TAPS;
   float steep = sqrtf(chart->lx * chart->lx + chart->ly * chart->ly), sum[3] = {0, 0, 0};
-  if (chart->raised || !(steep > 0.f)) taps = 1;
+  if (copy.r > 0.f || !(steep > 0.f)) taps = 1;
   for (int i = 0; i < taps; i++) {
     if (taps > 1) {
       float step = (((float)i + .5f) / (float)taps - .5f) / steep;

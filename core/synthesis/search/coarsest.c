@@ -255,6 +255,11 @@ static double favour_of_periods(const rc_periods *periods) {
   return periods->by_joints ? FAVOUR_OF_JOINTS : FAVOUR_OF_PERIODS;
 }
 
+/* Which kinds of copies there are. */
+static void take_kinds(rc_descent *e, const rc_chart *from) {
+  e->chart.raised = from->raised, e->chart.standing_w = from->standing_w;
+}
+
 /* Starts of whole copies by the periods of what is regular, or a row, which lies flat. The level
  * then holds the best of these and those before, *best. */
 static recede_status try_periods(rc_context *context, rc_descent *e, int first, int count,
@@ -263,19 +268,19 @@ static recede_status try_periods(rc_context *context, rc_descent *e, int first, 
   starts s = {first, first, first + count, NULL, 0};
   rc_trial by_periods;
   double own;
-  bool raised = level->chart.raised;
+  rc_chart chart = level->chart;
   rc_ranges ranges = level->ranges;
   RC_TRY(rc_trial_new(context, level, &by_periods));
   RC_TRY(rc_moves_by_periods(context, &e->periods, &s.moves, &s.move_count));
-  level->chart.raised = false;
+  level->chart = rc_chart_flat(chart);
   RC_TRY(rc_reach_moves(context, level, s.moves, s.move_count));
   RC_TRY(try_starts(context, e, &s, p, level, scratch, &by_periods, &own));
   e->by_periods = own < favour_of_periods(&e->periods) * *misfit;
   if (e->by_periods)
     *misfit = own, *best = by_periods;
   else
-    level->chart.raised = raised, level->ranges = ranges;
-  e->chart.raised = level->chart.raised;
+    level->chart = chart, level->ranges = ranges;
+  take_kinds(e, &level->chart);
   rc_trial_restore(level, best);
   return RECEDE_OK;
 }
@@ -287,14 +292,14 @@ static recede_status try_lattice(rc_context *context, rc_descent *e, int first, 
   starts s = {first, first + count, first + count, NULL, 0};
   rc_trial best;
   double own;
-  bool raised = level->chart.raised;
+  rc_chart chart = level->chart;
   RC_TRY(rc_trial_new(context, level, &best));
   level->lattice = e->lattice;
-  if (e->params->surface != RECEDE_SURFACE_RAISED) level->chart.raised = false;
+  if (e->params->surface != RECEDE_SURFACE_RAISED) level->chart = rc_chart_flat(chart);
   RC_TRY(try_starts(context, e, &s, p, level, scratch, &best, &own));
   e->on_lattice = own < FAVOUR_OF_LATTICE * misfit;
-  if (!e->on_lattice) level->chart.raised = raised, level->lattice = (rc_lattice){.spacing = 1};
-  e->chart.raised = level->chart.raised;
+  if (!e->on_lattice) level->chart = chart, level->lattice = (rc_lattice){.spacing = 1};
+  take_kinds(e, &level->chart);
   return RECEDE_OK;
 }
 

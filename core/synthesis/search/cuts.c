@@ -120,8 +120,7 @@ static float square_apart(const colour *p, const colour *q) {
 
 static float apart(const colour *p, const colour *q) { return sqrtf(square_apart(p, q)); }
 
-static float distance_at(const cuts *c, rc_query *query, rc_copy copy, int x, int y) {
-  rc_query_set(c->level, x, y, query);
+static float distance_of(const cuts *c, rc_query *query, rc_copy copy) {
   rc_place place = rc_query_place(c->level, query, copy);
   return rc_query_cost(c->level, c->kernels, query, copy, &place, RC_NO_COST);
 }
@@ -132,11 +131,12 @@ static float cost_at(const cuts *c, rc_query *query, rc_copy copy, const colour 
   float known = c->known[grid_at(c, x, y)], unit = c->unit;
   colour guide = colour_of(c->level->pixels[(size_t)y * (size_t)c->level->width + (size_t)x]);
   float odd = OF_GUIDE * square_apart(shown, &guide) / unit;
+  rc_query_set(c->level, x, y, query);
+  if (!rc_query_is_kind(c->level, query, copy)) return RC_NO_COST;
   if (known > 0.f) {
-    float cost = distance_at(c, query, copy, x, y);
+    float cost = distance_of(c, query, copy);
     return cost < RC_NO_COST ? known * cost / unit + odd : cost;
   }
-  rc_query_set(c->level, x, y, query);
   rc_place place = rc_query_place(c->level, query, copy);
   float price = rc_query_price(c->level, query, copy, &place);
   return price < RC_NO_COST ? price / unit + odd : price;
@@ -164,7 +164,7 @@ static float price_of_use(const cuts *c, rc_copy copy, int x, int y) {
     for (int i = -1; i <= 1; i++)
       if (rc_inside(level->width, level->height, sx + i, sy + j))
         uses += c->uses[(size_t)(sy + j) * (size_t)level->width + (size_t)(sx + i)];
-  uses -= (float)count_own(c, copy, x, y) * rc_use_of(level, &place);
+  uses -= (float)count_own(c, copy, x, y) * rc_use_of(copy, &place);
   return OF_USE * fminf(fmaxf(uses / 9, 0.f), 1.f);
 }
 

@@ -49,6 +49,18 @@ bool rc_query_allows(const rc_level *level, const rc_query *query, rc_copy copy,
 static inline rc_place rc_query_place(const rc_level *level, const rc_query *query, rc_copy copy) {
   return rc_copy_place(&level->chart, copy, query->x, query->y);
 }
+/* Whether a copy stands where things stand, or lies where they lie. */
+static inline bool rc_query_is_kind(const rc_level *level, const rc_query *query, rc_copy copy) {
+  const rc_chart *chart = &level->chart;
+  return !(chart->standing_w > 0.f) || rc_chart_stands(chart, query->x, query->y) == (copy.r > 0.f);
+}
+/* The copy, or the one of the right kind that takes the pixel from the same place. */
+static inline rc_copy rc_query_kind(const rc_level *level, const rc_query *query, rc_copy copy) {
+  if (rc_query_is_kind(level, query, copy) || isnan(copy.a)) return copy;
+  rc_place place = rc_query_place(level, query, copy);
+  if (place.beyond) return (rc_copy){NAN, NAN, NAN};
+  return rc_copy_between(&level->chart, query->x, query->y, place.x, place.y);
+}
 /* How much two of a level's pixels differ by, squared, over all components. */
 static inline float rc_pixels_square(uint32_t p, uint32_t q) {
   float sum = 0.f;

@@ -87,7 +87,9 @@ static void try_neighbours(const scan *s, pixel_state *state) {
     bool known = false;
     for (int k = 0; k < i && !known; k++)
       known = failed[k] && rc_same_copy(state->neighbours[k], state->neighbours[i]);
-    failed[i] = known || try_copy(s, state, state->neighbours[i], 1.f);
+    failed[i] =
+        known ||
+        try_copy(s, state, rc_query_kind(s->level, &state->query, state->neighbours[i]), 1.f);
   }
 }
 
@@ -128,7 +130,7 @@ static void try_anywhere(const scan *s, pixel_state *state) {
 static rc_copy shifted_by_period(const scan *s, const pixel_state *state, rc_copy from,
                                  rc_copy period) {
   const rc_level *level = s->level;
-  if (!level->chart.raised && !rc_has_lattice(&level->lattice))
+  if (!(from.r > 0.f) && !rc_has_lattice(&level->lattice))
     return (rc_copy){from.a + period.a, from.b + period.b, 0.f};
   rc_chart flat = rc_chart_flat(level->chart);
   rc_place place = rc_query_place(level, &state->query, from);
@@ -138,7 +140,8 @@ static rc_copy shifted_by_period(const scan *s, const pixel_state *state, rc_cop
 
 static void try_periods(const scan *s, pixel_state *state) {
   const rc_search *search = s->search;
-  rc_copy still = s->level->chart.raised ? (rc_copy){0.f, 0.f, 1.f} : (rc_copy){0.f, 0.f, 0.f};
+  bool stands = rc_chart_stands(&s->level->chart, state->query.x, state->query.y);
+  rc_copy still = {0.f, 0.f, stands ? 1.f : 0.f};
   for (int n = 0; n < search->period_tries && search->period_count; n++) {
     uint64_t bits =
         rc_random(search->key, (uint32_t)state->x, (uint32_t)state->y, 200u + (uint32_t)n);
@@ -155,12 +158,14 @@ static void improve_pixel(const scan *s, rc_box tile, pixel_state *state) {
   find_neighbours(s, tile, state);
   state->best = level->field[at];
   state->base = level->cost[at];
+  bool locked = level->locked && level->locked[at];
+  if (!locked) state->best = rc_query_kind(level, &state->query, state->best);
   rc_place place = rc_query_place(level, &state->query, state->best);
-  if (s->search->recost)
+  if (s->search->recost || !rc_same_copy(state->best, level->field[at]))
     state->base = isnan(state->best.a) ? RC_NO_COST
                                        : rc_query_cost(level, s->search->kernels, &state->query,
                                                        state->best, &place, RC_NO_COST);
-  if (level->locked && level->locked[at]) {
+  if (locked) {
     level->cost[at] = state->base < RC_NO_COST ? state->base : 0.f; /* part of it is no source */
     return;
   }

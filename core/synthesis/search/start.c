@@ -26,6 +26,7 @@ typedef struct choice {
 } choice;
 
 static void consider(const ring *r, choice *c, rc_copy copy) {
+  copy = rc_query_kind(r->level, &c->query, copy);
   if (isnan(copy.a) || rc_same_copy(copy, c->best)) return;
   rc_place place = rc_query_place(r->level, &c->query, copy);
   float cost = rc_query_cost(r->level, r->search->kernels, &c->query, copy, &place, c->cost);

@@ -29,7 +29,7 @@ static void count_uses(const rc_level *level, bool for_search, float *uses) {
       size_t at;
       if (!rc_place_at(level, &place, &at)) continue;
       uses[at] +=
-          for_search ? 1.f / (place.ratio * place.ratio * place.ratio) : rc_use_of(level, &place);
+          for_search ? 1.f / (place.ratio * place.ratio * place.ratio) : rc_use_of(copy, &place);
     }
 }
 

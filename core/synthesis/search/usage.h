@@ -7,9 +7,9 @@
 
 /* How many of the source's pixels a target pixel shows: the area scale, of raised copies that of
  * their one scale. */
-static inline float rc_use_of(const rc_level *level, const rc_place *place) {
+static inline float rc_use_of(rc_copy copy, const rc_place *place) {
   float scale = place->ratio / place->mismatch;
-  return level->chart.raised ? scale * scale : scale * scale * scale;
+  return copy.r > 0.f ? scale * scale : scale * scale * scale;
 }
 /* uses, level->width * level->height: how often the field shows each pixel now, 1 on the mean for
  * what one copy shows; those of other scales leave gaps and heaps. */
