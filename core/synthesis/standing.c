@@ -97,7 +97,7 @@ recede_status rc_measure_standing(rc_context *context, const rc_problem *problem
   int count = (int)(MOST_OF_FOCAL * plane->focal_px / unit / ROW_PX);
   row *rows;
   rc_block *mark = rc_mark(context);
-  RC_TRY(RC_NEW(context, count + 1, &rows));
+  RC_TRY(RC_NEW_ZERO(context, count + 1, &rows));
   for (int y = 1; y + 1 < image->height; y++) {
     RC_TRY(rc_poll(context));
     for (int x = 1; x + 1 < image->width; x++) {
