@@ -13,8 +13,8 @@ so that nothing better can be shown: the paper is as good as the oracle too.
 
 Medians, because both methods average and another seed gives another fill. Above all for planks: a
 fill without the end of a plank in it has no detail along the planks at all, and then the term is
-1.6 octaves (the paper's on p_planks for one seed in five, kwatra's for all). Of three fills they were
-still chance: kwatra's among p_flowers .25, where sixteen have .91, and the paper's .21 and .10.
+1.6 octaves (the paper's on p_planks for one seed in five, kwatra's for all). Of three fills they
+were still chance: kwatra's of p_flowers .25, where sixteen have .91, and the paper's .21 and .10.
 """
 import os
 import sys
