@@ -12,6 +12,14 @@
 #define RUN 16                 /* samples */
 #define MOST_MISSING (RUN / 4) /* of them, where there is no source */
 #define STEP_PX 2.f            /* between them */
+/* A row of samples across, and one more: two vectors. */
+#define LANES (RC_PROFILE + 1)
+typedef float four __attribute__((vector_size(16)));
+typedef int32_t four_ints __attribute__((vector_size(16)));
+typedef union row {
+  float at[LANES];
+  four half[2];
+} row;
 /* Of border pixels so near to each other the strongest is looked at. */
 #define APART_PX 2
 
@@ -30,28 +38,47 @@ static const float middle[RC_PROFILE] = {0, .2f, .6f, 1, 1, .6f, .2f};
 #define MOST_CROSSED 4
 #define LEAST_UNLIKE 4e-4f
 
+/* Of the rows of a run, each sample's. */
+typedef struct run_sums {
+  row value, square;
+  union {
+    int32_t at[LANES];
+    four_ints half[2];
+  } missing;
+} run_sums;
+
+static float middle_of(const float values[RUN]) {
+  float sorted[RUN];
+  for (int i = 0; i < RUN; i++) {
+    int at = i;
+    for (; at > 0 && sorted[at - 1] > values[i]; at--) sorted[at] = sorted[at - 1];
+    sorted[at] = values[i];
+  }
+  return sorted[RUN / 2];
+}
+
 /* Takes them from the sums. */
-static void leave_out_crossed(float rows[RUN][RC_PROFILE], int missing[RC_PROFILE],
-                              float mean[RC_PROFILE], float square[RC_PROFILE]) {
-  float unlike[RUN], sorted[RUN];
+static void leave_out_crossed(const row rows[RUN], run_sums *sums) {
+  float unlike[RUN], farthest = 0;
   int crossed = 0;
   for (int k = 0; k < RUN; k++) {
     unlike[k] = 0;
     for (int o = 0; o < RC_PROFILE; o++) {
-      float off = rows[k][o] - mean[o] / (float)(RUN - missing[o]);
+      float off = rows[k].at[o] - sums->value.at[o] / (float)(RUN - sums->missing.at[o]);
       if (!isnan(off)) unlike[k] += off * off;
     }
+    farthest = fmaxf(farthest, unlike[k]);
   }
-  memcpy(sorted, unlike, sizeof sorted);
-  qsort(sorted, RUN, sizeof *sorted, rc_by_value);
-  float usual = fmaxf(sorted[RUN / 2], LEAST_UNLIKE), most = EDGE_OF_CROSSED * usual;
-  if (sorted[RUN - 1] <= CROSSED * usual) return;
+  if (farthest <= CROSSED * LEAST_UNLIKE) return;
+  float usual = fmaxf(middle_of(unlike), LEAST_UNLIKE), most = EDGE_OF_CROSSED * usual;
+  if (farthest <= CROSSED * usual) return;
   for (int k = 0; k < RUN; k++) crossed += unlike[k] > most;
   if (crossed > MOST_CROSSED) return;
   for (int k = 0; k < RUN; k++)
     for (int o = 0; o < RC_PROFILE && unlike[k] > most; o++) {
-      if (isnan(rows[k][o])) continue;
-      missing[o]++, mean[o] -= rows[k][o], square[o] -= rows[k][o] * rows[k][o];
+      float value = rows[k].at[o];
+      if (isnan(value)) continue;
+      sums->missing.at[o]++, sums->value.at[o] -= value, sums->square.at[o] -= value * value;
     }
 }
 
@@ -63,39 +90,93 @@ static float apart_px(const rc_seen *seen, float x, float y, float along_x, floa
   return px < LEAST_APART_PX ? LEAST_APART_PX : px > MOST_APART_PX ? MOST_APART_PX : px;
 }
 
-/* between: samples are taken between the pixels where all four are sources. */
+static bool is_inside(const rc_mask *flags, float x, float y) {
+  return x >= 0 && y >= 0 && x < (float)flags->width && y < (float)flags->height;
+}
+
+static int pixel_at(const rc_mask *flags, float x, float y) {
+  return (int)y * flags->width + (int)x;
+}
+
+/* The values of the sources nearest to a row of samples across u through (x, y), NAN where there
+ * are none. Most of what looking for ends takes is spent here. */
+static void sample_row(const rc_seen *seen, float x, float y, float ux, float uy, float apart,
+                       row *to) {
+  const rc_mask *flags = seen->flags;
+  float at_x[LANES], at_y[LANES];
+  int at[LANES];
+  for (int o = 0; o < LANES; o++) {
+    float across = (float)(o - RC_PROFILE_HALF) * apart;
+    at_x[o] = x - uy * across + .5f, at_y[o] = y + ux * across + .5f;
+    at[o] = pixel_at(flags, at_x[o], at_y[o]);
+  }
+  bool inside = is_inside(flags, at_x[0], at_y[0]) &&
+                is_inside(flags, at_x[RC_PROFILE - 1], at_y[RC_PROFILE - 1]);
+  for (int o = 0; o < RC_PROFILE; o++)
+    to->at[o] = inside || is_inside(flags, at_x[o], at_y[o]) ? seen->value[at[o]] : NAN;
+  to->at[LANES - 1] = 0;
+}
+
+static float along_run(int k, float outwards) {
+  return outwards * (RC_PROFILE_FROM_PX + STEP_PX * (float)k);
+}
+
+/* Whether too much of the run's own line is missing: most directions lead into the hole. */
+static bool leads_nowhere(const rc_seen *seen, float x, float y, float ux, float uy,
+                          float outwards) {
+  int missing = 0;
+  for (int k = 0; k < RUN && missing <= MOST_MISSING; k++) {
+    float along = along_run(k, outwards);
+    float at_x = x + ux * along + .5f, at_y = y + uy * along + .5f;
+    missing += !is_inside(seen->flags, at_x, at_y) ||
+               isnan(seen->value[pixel_at(seen->flags, at_x, at_y)]);
+  }
+  return missing > MOST_MISSING;
+}
+
+/* Where all four pixels around a sample are sources it is taken between them. */
+static void look_between(const rc_seen *seen, float x, float y, float ux, float uy, float apart,
+                         row *to) {
+  const rc_ruler ruler = {rc_seen_source, seen, ux, uy, NULL};
+  for (int o = 0; o < RC_PROFILE; o++) {
+    float across = (float)(o - RC_PROFILE_HALF) * apart;
+    if (!isnan(to->at[o])) rc_ruler_sample(&ruler, x - uy * across, y + ux * across, &to->at[o]);
+  }
+}
+
+/* False: too many are missing. */
+static bool add_row(const row *samples, run_sums *sums) {
+  four_ints too_many = {0};
+  for (int h = 0; h < 2; h++) {
+    four value = samples->half[h];
+    four_ints known = value == value; /* -1, or 0 */
+    value = (four)((four_ints)value & known);
+    sums->value.half[h] += value, sums->square.half[h] += value * value;
+    sums->missing.half[h] += 1 + known;
+    too_many |= sums->missing.half[h] > MOST_MISSING;
+  }
+  return !(too_many[0] | too_many[1] | too_many[2] | too_many[3]);
+}
+
 static rc_run measure(const rc_seen *seen, float x, float y, float ux, float uy, float outwards,
                       bool between) {
   rc_run p = {.strength = 0};
-  const rc_mask *flags = seen->flags;
-  const rc_ruler ruler = {rc_seen_source, seen, ux, uy, NULL};
-  int missing[RC_PROFILE] = {0};
-  float rows[RUN][RC_PROFILE], square[RC_PROFILE] = {0}, noise = 0;
-  float *mean = p.profile.mean, signal = 0;
+  run_sums sums = {.missing = {{0}}};
+  row rows[RUN];
+  float noise = 0, signal = 0, *mean = p.profile.mean;
+  if (leads_nowhere(seen, x, y, ux, uy, outwards)) return p;
   for (int k = 0; k < RUN; k++) {
-    float along = outwards * (RC_PROFILE_FROM_PX + STEP_PX * (float)k);
+    float along = along_run(k, outwards);
     float apart = apart_px(seen, x, y, ux * along, uy * along);
-    for (int o = 0; o < RC_PROFILE; o++) {
-      float across = (float)(o - RC_PROFILE_HALF) * apart;
-      float at_x = x + ux * along - uy * across, at_y = y + uy * along + ux * across;
-      int px = rc_floor(at_x + .5f), py = rc_floor(at_y + .5f);
-      size_t at = (size_t)py * (size_t)flags->width + (size_t)px;
-      if (!rc_inside(flags->width, flags->height, px, py) || !(flags->data[at] & RC_SOURCE)) {
-        if (++missing[o] > MOST_MISSING) return p;
-        rows[k][o] = NAN;
-        continue;
-      }
-      float value = seen->value[at];
-      if (between) rc_ruler_sample(&ruler, at_x, at_y, &value);
-      rows[k][o] = value;
-      mean[o] += value, square[o] += value * value;
-    }
+    sample_row(seen, x + ux * along, y + uy * along, ux, uy, apart, &rows[k]);
+    if (between) look_between(seen, x + ux * along, y + uy * along, ux, uy, apart, &rows[k]);
+    if (!add_row(&rows[k], &sums)) return p;
   }
-  if (seen->without_crossings) leave_out_crossed(rows, missing, mean, square);
+  if (seen->without_crossings) leave_out_crossed(rows, &sums);
   for (int o = 0; o < RC_PROFILE; o++) {
-    float count = (float)(RUN - missing[o]);
-    mean[o] /= count;
-    noise += square[o] / count - mean[o] * mean[o];
+    float count = (float)(RUN - sums.missing.at[o]);
+    mean[o] = sums.value.at[o] / count;
+    noise += sums.square.at[o] / count - mean[o] * mean[o];
     p.profile.tone += mean[o] / RC_PROFILE;
   }
   for (int o = 0; o < RC_PROFILE; o++) {

@@ -7,9 +7,8 @@
 bool rc_seen_source(const void *user, int x, int y, float *value) {
   const rc_seen *picture = user;
   if (!rc_inside(picture->flags->width, picture->flags->height, x, y)) return false;
-  size_t at = (size_t)y * (size_t)picture->flags->width + (size_t)x;
-  *value = picture->value[at];
-  return (picture->flags->data[at] & RC_SOURCE) != 0;
+  *value = picture->value[(size_t)y * (size_t)picture->flags->width + (size_t)x];
+  return !isnan(*value);
 }
 
 recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *flags,
@@ -18,7 +17,10 @@ recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *
   float *value;
   RC_TRY(RC_NEW_ZERO(context, pixels, &value));
   for (size_t i = 0; i < pixels; i++)
-    for (size_t k = 0; k < channels; k++) value[i] += axis[k] * image->data[i * channels + k];
+    if (flags->data[i] & RC_SOURCE)
+      for (size_t k = 0; k < channels; k++) value[i] += axis[k] * image->data[i * channels + k];
+    else
+      value[i] = NAN;
   *seen = (rc_seen){flags, value, false, NULL};
   return RECEDE_OK;
 }
@@ -26,17 +28,18 @@ recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *
 recede_status rc_see_contrast(rc_context *context, rc_seen *seen) {
   int width = seen->flags->width, height = seen->flags->height;
   float *contrast;
-  RC_TRY(RC_NEW_ZERO(context, (size_t)width * (size_t)height, &contrast));
+  RC_TRY(RC_NEW(context, (size_t)width * (size_t)height, &contrast));
   for (int y = 0; y < height; y++)
     for (int x = 0; x < width; x++) {
       float sum = 0, square = 0, count = 0, value;
+      size_t at = (size_t)y * (size_t)width + (size_t)x;
+      contrast[at] = NAN;
+      if (isnan(seen->value[at])) continue;
       for (int k = 0; k < 9; k++) {
         if (!rc_seen_source(seen, x - 1 + k % 3, y - 1 + k / 3, &value)) continue;
         sum += value, square += value * value, count++;
       }
-      if (count > 0)
-        contrast[(size_t)y * (size_t)width + (size_t)x] =
-            sqrtf(fmaxf(square / count - sum / count * (sum / count), 0.f));
+      contrast[at] = sqrtf(fmaxf(square / count - sum / count * (sum / count), 0.f));
     }
   seen->value = contrast;
   return rc_poll(context);
