@@ -49,7 +49,8 @@ def metadata(path):
 
 def fill(folder, image, out, *more):
     mask = write(folder / "mask.png", hole())
-    return recede("fill", image, "--mask", mask, "--slant", "30", "-o", out, "-q", "--force", *more)
+    return recede("fill", image, "--mask", mask, "--slant", "30", "--quality", "draft", "-o", out,
+                  "-q", "--force", *more)
 
 
 def check_kept(before, after, what, names=tuple(KEPT)):
