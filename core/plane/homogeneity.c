@@ -16,6 +16,7 @@
 #define STEPS (RC_SPECTRA_STEPS / 2)
 #define TURNS (RC_SPECTRA_DIRECTIONS / 2)
 #define BINS (STEPS * TURNS)
+_Static_assert(BINS % 4 == 0, "four at once");
 
 #define IMPOSSIBLE 99.
 #define EXCUSED_CONTRAST .5f
@@ -59,12 +60,14 @@ static work lay_out(float *scratch, size_t count) {
   return w;
 }
 
+/* Of the bins. */
+typedef struct frequencies {
+  rc_four x[BINS / 4], y[BINS / 4];
+} frequencies;
+
 /* Bilinear in log frequency and direction; NaN outside what was measured. */
-static float power_at(const rc_spectrum *cell, float kx, float ky) {
-  const float lowest = -1.4739311883f - 4; /* log2 .36 - 4 octaves */
-  float step = (.5f * rc_log2(kx * kx + ky * ky) - lowest) * RC_SPECTRA_PER_OCTAVE - .5f;
+static float power_at(const rc_spectrum *cell, float step, float turn) {
   if (!(step >= 0 && step <= RC_SPECTRA_STEPS - 1)) return NAN;
-  float turn = rc_half_turns(kx, ky) * RC_SPECTRA_DIRECTIONS;
   int s = (int)step, t = (int)turn;
   if (s > RC_SPECTRA_STEPS - 2) s = RC_SPECTRA_STEPS - 2;
   if (t > RC_SPECTRA_DIRECTIONS - 1) t = RC_SPECTRA_DIRECTIONS - 1;
@@ -74,8 +77,10 @@ static float power_at(const rc_spectrum *cell, float kx, float ky) {
 }
 
 /* dx, dy from the reference; w there is 1, its gradient l. Returns how many bins it filled. */
-static int pull_back(const rc_spectrum *cell, const float direction[BINS][2], float dx, float dy,
-                     float w, const float l[2], bool raised, float *values, float *there) {
+static int pull_back(const rc_spectrum *cell, const frequencies *plane, float dx, float dy, float w,
+                     const float l[2], bool raised, float *values, float *there) {
+  const float lowest = -1.4739311883f - 4; /* log2 .36 - 4 octaves */
+  rc_four step[BINS / 4], turn[BINS / 4];
   float a = 1 / w, b = 0, c = 0, d = 1 / w;
   if (!raised) {
     a -= dx * l[0] / (w * w), b -= dx * l[1] / (w * w);
@@ -83,9 +88,14 @@ static int pull_back(const rc_spectrum *cell, const float direction[BINS][2], fl
   }
   float density = rc_log2(fabsf(a * d - b * c));
   int count = 0;
+  for (int i = 0; i < BINS / 4; i++) {
+    rc_four kx = a * plane->x[i] + c * plane->y[i];
+    rc_four ky = b * plane->x[i] + d * plane->y[i];
+    step[i] = (.5f * rc_log2_of_four(kx * kx + ky * ky) - lowest) * RC_SPECTRA_PER_OCTAVE - .5f;
+    turn[i] = rc_half_turns_of_four(kx, ky) * RC_SPECTRA_DIRECTIONS;
+  }
   for (int i = 0; i < BINS; i++) {
-    float kx = direction[i][0], ky = direction[i][1];
-    float value = power_at(cell, a * kx + c * ky, b * kx + d * ky) + density;
+    float value = power_at(cell, step[i / 4][i % 4], turn[i / 4][i % 4]) + density;
     bool known = isfinite(value);
     values[i] = known ? value : 0;
     there[i] = known ? 1 : 0;
@@ -94,18 +104,19 @@ static int pull_back(const rc_spectrum *cell, const float direction[BINS][2], fl
   return count;
 }
 
-static void fill_frequencies(float frequency[BINS][2]) {
+static void fill_frequencies(frequencies *to) {
   for (int s = 0; s < STEPS; s++)
     for (int t = 0; t < TURNS; t++) {
       double k = RC_SPECTRA_LOWEST * exp2((s + .5) * RC_SPECTRA_OCTAVES / STEPS);
-      frequency[s * TURNS + t][0] = (float)(k * cos(M_PI * t / TURNS));
-      frequency[s * TURNS + t][1] = (float)(k * sin(M_PI * t / TURNS));
+      int i = s * TURNS + t;
+      to->x[i / 4][i % 4] = (float)(k * cos(M_PI * t / TURNS));
+      to->y[i / 4][i % 4] = (float)(k * sin(M_PI * t / TURNS));
     }
 }
 
 /* Pulls every cell back; trust 0 and misfit NaN or infinite where nothing can be compared. */
 static bool sample(const rc_homogeneity *h, rc_lean lean, const work *to) {
-  float frequency[BINS][2];
+  frequencies plane;
   double n[3], f = h->focal_px;
   rc_lean_normal(lean, n);
   double w0 =
@@ -113,7 +124,7 @@ static bool sample(const rc_homogeneity *h, rc_lean lean, const work *to) {
       n[2];
   if (w0 < .02) return false;
   const float l[2] = {(float)(n[0] / (f * w0)), (float)(n[1] / (f * w0))};
-  fill_frequencies(frequency);
+  fill_frequencies(&plane);
   for (int i = 0; i < h->spectra->count; i++) {
     float dx = h->spectra->x[i] - (float)h->ref_x, dy = h->spectra->y[i] - (float)h->ref_y;
     float w = 1 + l[0] * dx + l[1] * dy;
@@ -121,8 +132,8 @@ static bool sample(const rc_homogeneity *h, rc_lean lean, const work *to) {
     to->misfit[i] = INFINITY;
     to->trust[i] = 0;
     if (w < (float)LEAST_W) continue;
-    int bins = pull_back(&h->spectra->power[i], (const float(*)[2])frequency, dx, dy, w, l,
-                         h->raised, to->values + (size_t)i * BINS, to->there + (size_t)i * BINS);
+    int bins = pull_back(&h->spectra->power[i], &plane, dx, dy, w, l, h->raised,
+                         to->values + (size_t)i * BINS, to->there + (size_t)i * BINS);
     to->misfit[i] = NAN;
     to->trust[i] = bins >= LEAST_BINS ? 1 : 0;
   }
@@ -159,8 +170,9 @@ static void take_importance(const work *w) {
 }
 
 static float dot(const float *a, const float *b, const float *c) {
-  float sum = 0;
-  for (int i = 0; i < BINS; i++) sum += a[i] * b[i] * c[i];
+  float product[BINS], sum = 0;
+  for (int i = 0; i < BINS; i++) product[i] = a[i] * b[i] * c[i];
+  for (int i = 0; i < BINS; i++) sum += product[i];
   return sum;
 }
 
@@ -174,8 +186,9 @@ static void judge_cell(const rc_homogeneity *h, const work *w, int i) {
   excuse = EXCUSED_CONTRAST * w->contrast[i];
   for (int b = 0; b < BINS; b++) {
     float left = residual[b] - excuse;
-    square += there[b] * w->importance[b] * left * left;
+    residual[b] = there[b] * w->importance[b] * left * left;
   }
+  for (int b = 0; b < BINS; b++) square += residual[b];
   w->misfit[i] = square / weight;
   float ratio = w->misfit[i] / h->saturation;
   w->trust[i] = 1 / (1 + ratio * ratio);
