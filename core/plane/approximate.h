@@ -4,16 +4,7 @@
 #ifndef RECEDE_PLANE_APPROXIMATE_H
 #define RECEDE_PLANE_APPROXIMATE_H
 
-#include <stdint.h>
-
-typedef float rc_four __attribute__((vector_size(16)));
-typedef int32_t rc_four_ints __attribute__((vector_size(16)));
-typedef uint32_t rc_four_words __attribute__((vector_size(16)));
-
-/* which: -1 or 0, as comparisons give. */
-static inline rc_four rc_select(rc_four_ints which, rc_four yes, rc_four no) {
-  return (rc_four)((which & (rc_four_ints)yes) | (~which & (rc_four_ints)no));
-}
+#include "base/four.h"
 
 /* log2 of positive, normal values; error < 1e-6. */
 static inline rc_four rc_log2_of_four(rc_four value) {

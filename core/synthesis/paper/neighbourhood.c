@@ -2,25 +2,24 @@
 
 #include <string.h>
 
+#include "base/four.h"
 #include "base/memory.h"
 #include "base/random.h"
 
-typedef float lanes __attribute__((vector_size(16)));
-
-static inline lanes load(const float *from) {
-  lanes v;
+static inline rc_four load(const float *from) {
+  rc_four v;
   memcpy(&v, from, sizeof v);
   return v;
 }
-static inline float total(lanes low, lanes high) {
-  lanes sum = low + high;
+static inline float total(rc_four low, rc_four high) {
+  rc_four sum = low + high;
   return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
 float rc_squared_distance(const float *a, const float *b, int count) {
-  lanes low = {0}, high = {0};
+  rc_four low = {0}, high = {0};
   for (int i = 0; i < count; i += 8) {
-    lanes d = load(a + i) - load(b + i), e = load(a + i + 4) - load(b + i + 4);
+    rc_four d = load(a + i) - load(b + i), e = load(a + i + 4) - load(b + i + 4);
     low += d * d;
     high += e * e;
   }
@@ -28,7 +27,7 @@ float rc_squared_distance(const float *a, const float *b, int count) {
 }
 
 float rc_dot(const float *a, const float *b, int count) {
-  lanes low = {0}, high = {0};
+  rc_four low = {0}, high = {0};
   for (int i = 0; i < count; i += 8) {
     low += load(a + i) * load(b + i);
     high += load(a + i + 4) * load(b + i + 4);

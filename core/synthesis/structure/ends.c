@@ -1,25 +1,15 @@
 #include "synthesis/structure/ends.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
+#include "base/four.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/real.h"
 
 /* Profiles are averaged along a run outside the hole. */
 #define RUN 16                 /* samples */
 #define MOST_MISSING (RUN / 4) /* of them, where there is no source */
 #define STEP_PX 2.f            /* between them */
-/* A row of samples across, and one more: two vectors. */
-#define LANES (RC_PROFILE + 1)
-typedef float four __attribute__((vector_size(16)));
-typedef int32_t four_ints __attribute__((vector_size(16)));
-typedef union row {
-  float at[LANES];
-  four half[2];
-} row;
 /* Of border pixels so near to each other the strongest is looked at. */
 #define APART_PX 2
 
@@ -38,18 +28,26 @@ static const float middle[RC_PROFILE] = {0, .2f, .6f, 1, 1, .6f, .2f};
 #define MOST_CROSSED 4
 #define LEAST_UNLIKE 4e-4f
 
+/* A row of samples across, and one more: two vectors. */
+#define LANES (RC_PROFILE + 1)
+_Static_assert(LANES == 8, "two vectors");
+typedef union row {
+  float at[LANES];
+  rc_four half[2];
+} row;
+
 /* Of the rows of a run, each sample's. */
 typedef struct run_sums {
   row value, square;
   union {
     int32_t at[LANES];
-    four_ints half[2];
+    rc_four_ints half[2];
   } missing;
 } run_sums;
 
-static float middle_of(const float values[RUN]) {
-  float sorted[RUN];
-  for (int i = 0; i < RUN; i++) {
+static float median_of(const float values[RUN]) {
+  float sorted[RUN] = {values[0]};
+  for (int i = 1; i < RUN; i++) {
     int at = i;
     for (; at > 0 && sorted[at - 1] > values[i]; at--) sorted[at] = sorted[at - 1];
     sorted[at] = values[i];
@@ -70,7 +68,7 @@ static void leave_out_crossed(const row rows[RUN], run_sums *sums) {
     farthest = fmaxf(farthest, unlike[k]);
   }
   if (farthest <= CROSSED * LEAST_UNLIKE) return;
-  float usual = fmaxf(middle_of(unlike), LEAST_UNLIKE), most = EDGE_OF_CROSSED * usual;
+  float usual = fmaxf(median_of(unlike), LEAST_UNLIKE), most = EDGE_OF_CROSSED * usual;
   if (farthest <= CROSSED * usual) return;
   for (int k = 0; k < RUN; k++) crossed += unlike[k] > most;
   if (crossed > MOST_CROSSED) return;
@@ -87,15 +85,16 @@ static void leave_out_crossed(const row rows[RUN], run_sums *sums) {
 static float apart_px(const rc_seen *seen, float x, float y, float along_x, float along_y) {
   if (!seen->narrows) return 1.f;
   float px = rc_chart_w(seen->narrows, x + along_x, y + along_y) / rc_chart_w(seen->narrows, x, y);
-  return px < LEAST_APART_PX ? LEAST_APART_PX : px > MOST_APART_PX ? MOST_APART_PX : px;
+  return !(px >= LEAST_APART_PX) ? LEAST_APART_PX : px > MOST_APART_PX ? MOST_APART_PX : px;
 }
 
 static bool is_inside(const rc_mask *flags, float x, float y) {
   return x >= 0 && y >= 0 && x < (float)flags->width && y < (float)flags->height;
 }
 
-static int pixel_at(const rc_mask *flags, float x, float y) {
-  return (int)y * flags->width + (int)x;
+/* Unsigned, for outside it may be anything. */
+static uint32_t pixel_at(const rc_mask *flags, float x, float y) {
+  return (uint32_t)(int)y * (uint32_t)flags->width + (uint32_t)(int)x;
 }
 
 /* The values of the sources nearest to a row of samples across u through (x, y), NAN where there
@@ -104,12 +103,13 @@ static void sample_row(const rc_seen *seen, float x, float y, float ux, float uy
                        row *to) {
   const rc_mask *flags = seen->flags;
   float at_x[LANES], at_y[LANES];
-  int at[LANES];
+  uint32_t at[LANES];
   for (int o = 0; o < LANES; o++) {
     float across = (float)(o - RC_PROFILE_HALF) * apart;
     at_x[o] = x - uy * across + .5f, at_y[o] = y + ux * across + .5f;
     at[o] = pixel_at(flags, at_x[o], at_y[o]);
   }
+  /* Along the row they only grow, or only fall. */
   bool inside = is_inside(flags, at_x[0], at_y[0]) &&
                 is_inside(flags, at_x[RC_PROFILE - 1], at_y[RC_PROFILE - 1]);
   for (int o = 0; o < RC_PROFILE; o++)
@@ -146,11 +146,11 @@ static void look_between(const rc_seen *seen, float x, float y, float ux, float 
 
 /* False: too many are missing. */
 static bool add_row(const row *samples, run_sums *sums) {
-  four_ints too_many = {0};
+  rc_four_ints too_many = {0};
   for (int h = 0; h < 2; h++) {
-    four value = samples->half[h];
-    four_ints known = value == value; /* -1, or 0 */
-    value = (four)((four_ints)value & known);
+    rc_four value = samples->half[h];
+    rc_four_ints known = value == value; /* -1, or 0 */
+    value = rc_select(known, value, (rc_four){0});
     sums->value.half[h] += value, sums->square.half[h] += value * value;
     sums->missing.half[h] += 1 + known;
     too_many |= sums->missing.half[h] > MOST_MISSING;
@@ -168,8 +168,9 @@ static rc_run measure(const rc_seen *seen, float x, float y, float ux, float uy,
   for (int k = 0; k < RUN; k++) {
     float along = along_run(k, outwards);
     float apart = apart_px(seen, x, y, ux * along, uy * along);
-    sample_row(seen, x + ux * along, y + uy * along, ux, uy, apart, &rows[k]);
-    if (between) look_between(seen, x + ux * along, y + uy * along, ux, uy, apart, &rows[k]);
+    float at_x = x + ux * along, at_y = y + uy * along;
+    sample_row(seen, at_x, at_y, ux, uy, apart, &rows[k]);
+    if (between) look_between(seen, at_x, at_y, ux, uy, apart, &rows[k]);
     if (!add_row(&rows[k], &sums)) return p;
   }
   if (seen->without_crossings) leave_out_crossed(rows, &sums);

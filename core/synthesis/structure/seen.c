@@ -15,12 +15,12 @@ recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *
                      const float axis[3], rc_seen *seen) {
   size_t pixels = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;
   float *value;
-  RC_TRY(RC_NEW_ZERO(context, pixels, &value));
-  for (size_t i = 0; i < pixels; i++)
-    if (flags->data[i] & RC_SOURCE)
-      for (size_t k = 0; k < channels; k++) value[i] += axis[k] * image->data[i * channels + k];
-    else
-      value[i] = NAN;
+  RC_TRY(RC_NEW(context, pixels, &value));
+  for (size_t i = 0; i < pixels; i++) {
+    float sum = 0;
+    for (size_t k = 0; k < channels; k++) sum += axis[k] * image->data[i * channels + k];
+    value[i] = flags->data[i] & RC_SOURCE ? sum : NAN;
+  }
   *seen = (rc_seen){flags, value, false, NULL};
   return RECEDE_OK;
 }

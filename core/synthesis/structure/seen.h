@@ -7,7 +7,7 @@
 
 typedef struct rc_seen {
   const rc_mask *flags;
-  const float *value;     /* NAN: no source */
+  const float *value;     /* finite; NAN: no source */
   bool without_crossings; /* rc_run_measure leaves out what crosses a run */
   /* The level's, where lines get so much narrower towards the horizon that a run must, too; else
    * NULL. */
