@@ -5,6 +5,7 @@ arguments are the command and many.c. A test fails by an exception, mostly from 
 """
 import json
 import os
+import resource
 import select
 import shutil
 import signal
@@ -30,6 +31,7 @@ TIME_LIMIT_S = 60
 
 # Under sanitizers the same code is run, less often: each run takes several times as long.
 SANITIZED = "ASAN_OPTIONS" in os.environ
+DRAFT = ["--quality", "draft"]
 if SANITIZED:
     # Leaks of libraries are told by who allocated, which the fast unwinder does not see through
     # libraries without frame pointers.
@@ -57,8 +59,11 @@ def checked(done, more=b""):
 
 
 def recede(*arguments, code=0, environment=None, prepare=None, folder=None):
-    """Runs the command, checks its exit code (None: any), and returns the finished process."""
+    """Runs the command, checks its exit code (None: any), and returns the finished process. Under
+    sanitizers fills are drafts: what the engine does is run by its own tests."""
     words = [os.fspath(a) if isinstance(a, Path) else str(a) for a in arguments]
+    if SANITIZED and words[:1] in (["fill"], ["synthesize"]) and "--quality" not in words:
+        words[1:1] = DRAFT
     if all(words) and "--help" not in words and not (environment or prepare or folder
                                                      or ONE_BY_ONE):
         done = MANY.run(*words)
@@ -90,17 +95,27 @@ class Many:
     def __enter__(self):
         return self
 
+    def limit(self, what, most):
+        """The soft limit of a resource for the runs that follow, None for none."""
+        _, hard = resource.getrlimit(what)
+        resource.prlimit(self.process.pid, what, (hard if most is None else most, hard))
+
     def __exit__(self, *_):
         self.process.stdin.close()
         self.process.wait(TIME_LIMIT_S)
         self.process.stdout.close()
 
-    def run(self, *arguments):
+    def run(self, *arguments, kill_after_s=None):
         """The finished process; for a run that a signal ended, its code is minus the number."""
         self.paths[2].write_bytes(b"")
         words = [*self.paths, *arguments, ""]
         self.process.stdin.write(b"".join(os.fsencode(str(word)) + b"\0" for word in words))
         self.process.stdin.flush()
+        if kill_after_s is not None:
+            time.sleep(kill_after_s)
+            for child in Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children") \
+                    .read_text().split():
+                os.kill(int(child), signal.SIGKILL)
         ready, _, _ = select.select([self.process.stdout], [], [], TIME_LIMIT_S)
         if not ready:
             os.killpg(self.process.pid, signal.SIGKILL)

@@ -279,7 +279,7 @@ def test_xmp_alone_turns_nothing(folder):
                 path.write_bytes(image.read_bytes())
                 subprocess.run(["exiftool", "-q", "-overwrite_original", "-Make=Acme", *turn, *more,
                                 str(path)], check=True)
-            for target in ("png", "bmp") if harness.SANITIZED else ("png", "tif", "bmp", "tga"):
+            for target in ("bmp",) if harness.SANITIZED else ("png", "tif", "bmp", "tga"):
                 pixels = []
                 for path in (plain, image):
                     fill(folder, path, folder / f"out.{target}")

@@ -12,7 +12,7 @@ import harness
 from harness import check, hole, read, recede, same_bits, strays, texture, write
 
 SUFFIXES = {"png": "u8", "jpg": "u8", "tif": "u16", "exr": "half"}
-SIZES = 50  # of room on a disk that is too small
+SIZES = 20  # of room on a disk that is too small
 PAGE = 4096
 OLD = b"the old file, which must stay as it is\n" * 20
 
@@ -21,7 +21,7 @@ def job(folder, suffix="png", kind="u8"):
     """Arguments of a fill into out.suffix, which is what a complete output is compared with."""
     image = write(folder / f"in.{suffix}", texture(kind=kind), half=kind == "half")
     mask = write(folder / "mask.png", hole())
-    return ["fill", image, "--mask", mask, "--frontal", "-q"]
+    return ["fill", image, "--mask", mask, "--frontal", "-q", *harness.DRAFT]
 
 
 def expected(folder, arguments, suffix="png"):
@@ -165,17 +165,17 @@ def noisy_job(folder, suffix, kind, size=220):
 
 
 def test_file_size_limit(folder):
-    for suffix, kind in SUFFIXES.items():
-        arguments = noisy_job(folder, suffix, kind)
-        (folder / f"old.{suffix}").write_bytes(OLD)
-        size = len(expected(folder, arguments, suffix))
-        for part in (.001, .9) if harness.SANITIZED else (0, .001, .2, .5, .9, .9999):
-            bytes_left = int(size * part)
-            for name, before in (("out", None), ("old", OLD)):
-                out = folder / f"{name}.{suffix}"
-                done = recede(*arguments, "-o", out, "--force", code=None, prepare=lambda
-                              b=bytes_left: resource.setrlimit(resource.RLIMIT_FSIZE, (b, b)))
-                check_failed_write(done.returncode, out, before)
+    with harness.Many(folder) as many:
+        for suffix, kind in SUFFIXES.items():
+            arguments = noisy_job(folder, suffix, kind)
+            (folder / f"old.{suffix}").write_bytes(OLD)
+            size = len(expected(folder, arguments, suffix))
+            for part in (.001, .9) if harness.SANITIZED else (0, .001, .2, .5, .9, .9999):
+                many.limit(resource.RLIMIT_FSIZE, int(size * part))
+                for name, before in (("out", None), ("old", OLD)):
+                    out = folder / f"{name}.{suffix}"
+                    done = many.run(*arguments, "-o", out, "--force")
+                    check_failed_write(done.returncode, out, before)
 
 
 def test_full_disk(folder):
@@ -194,11 +194,11 @@ def test_full_disk(folder):
 
 
 def fill_up(many, folder, disk, suffix, kind):
-    arguments = noisy_job(folder, suffix, kind, 480)
+    arguments = noisy_job(folder, suffix, kind, 300)
     size = len(expected(folder, arguments, suffix))
     check(size // PAGE > SIZES, suffix, "is too small for", SIZES, "sizes of room")
     out = disk / f"out.{suffix}"
-    for number in range(0, SIZES, 17 if harness.SANITIZED else 1):
+    for number in range(0, SIZES, 7 if harness.SANITIZED else 1):
         for path in disk.iterdir():
             path.unlink()
         before = OLD if number % 2 else None
@@ -214,24 +214,23 @@ def test_kill_at_any_moment(folder):
     """After kill -9 the output is absent (or the old one) or complete."""
     source = random.Random(6)
     ends = {"absent": 0, "old": 0, "complete": 0}
-    for suffix, kind in SUFFIXES.items():
-        arguments = job(folder, suffix, kind)
-        whole = expected(folder, arguments, suffix)
-        began = time.monotonic()
-        start(*arguments, "-o", folder / f"usual.{suffix}").communicate()
-        usual = time.monotonic() - began
-        out = folder / f"out.{suffix}"
-        for number in range(4 if harness.SANITIZED else 25):
-            out.unlink(missing_ok=True)
-            if number % 2:
-                out.write_bytes(OLD)
-            run = start(*arguments, "-o", out, "--force")
-            time.sleep(source.uniform(.1, 1.2) * usual)
-            run.kill()
-            run.communicate()
-            content = out.read_bytes() if out.exists() else None
-            check(content in ((OLD, whole) if number % 2 else (None, whole)), suffix, "torn")
-            ends["complete" if content == whole else "old" if content else "absent"] += 1
+    with harness.Many(folder) as many:
+        for suffix, kind in SUFFIXES.items():
+            arguments = job(folder, suffix, kind)
+            whole = expected(folder, arguments, suffix)
+            began = time.monotonic()
+            many.run(*arguments, "-o", folder / f"usual.{suffix}")
+            usual = time.monotonic() - began
+            out = folder / f"out.{suffix}"
+            for number in range(4 if harness.SANITIZED else 25):
+                out.unlink(missing_ok=True)
+                if number % 2:
+                    out.write_bytes(OLD)
+                many.run(*arguments, "-o", out, "--force",
+                         kill_after_s=source.uniform(0, 1.2) * usual)
+                content = out.read_bytes() if out.exists() else None
+                check(content in ((OLD, whole) if number % 2 else (None, whole)), suffix, "torn")
+                ends["complete" if content == whole else "old" if content else "absent"] += 1
     print("#", ends)
     check(harness.SANITIZED or ends["complete"], "killed before it wrote, each time")
     for path in strays(folder):  # allowed after kill -9, under this name
