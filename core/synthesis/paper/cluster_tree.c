@@ -20,7 +20,8 @@ typedef struct builder {
   uint64_t key;
   uint8_t *label; /* of the members, by place in order */
   int *swap;
-  float *scratch, *centroids; /* RC_TREE_BRANCHES x dims */
+  float *scratch;
+  float *centroids, *sums; /* RC_TREE_BRANCHES x dims */
 } builder;
 
 static const float *point(const rc_tree *tree, int place, float *scratch) {
@@ -54,35 +55,35 @@ static void seed_centroids(builder *b, const rc_tree_node *node, int index) {
   }
 }
 
-/* Labels every member with its nearest centroid; returns how many labels changed. */
-static recede_status assign(builder *b, const rc_tree_node *node, int *changed) {
+/* Labels every member with its nearest centroid and adds it to that cluster's sum; *changed: how
+ * many labels did. */
+static recede_status assign(builder *b, const rc_tree_node *node, int *changed,
+                            int sizes[RC_TREE_BRANCHES]) {
   int dims = b->tree->points.dims;
   *changed = 0;
+  memset(sizes, 0, RC_TREE_BRANCHES * sizeof *sizes);
   for (int i = node->first; i < node->end; i++) {
-    uint8_t label =
-        (uint8_t)nearest(b->centroids, RC_TREE_BRANCHES, dims, point(b->tree, i, b->scratch));
+    const float *vector = point(b->tree, i, b->scratch);
+    uint8_t label = (uint8_t)nearest(b->centroids, RC_TREE_BRANCHES, dims, vector);
+    float *sum = centroid(b->sums, dims, label);
     *changed += label != b->label[i];
     b->label[i] = label;
+    if (sizes[label]++ == 0)
+      memcpy(sum, vector, (size_t)dims * sizeof *sum);
+    else
+      for (int k = 0; k < dims; k++) sum[k] += vector[k];
     if (i % 256 == 255) RC_TRY(rc_poll(b->context));
   }
   return RECEDE_OK;
 }
 
 /* Centroids of the labelled members; those of empty clusters stay. */
-static void average(builder *b, const rc_tree_node *node, int sizes[RC_TREE_BRANCHES]) {
+static void average(builder *b, const int sizes[RC_TREE_BRANCHES]) {
   int dims = b->tree->points.dims;
-  memset(sizes, 0, RC_TREE_BRANCHES * sizeof *sizes);
-  for (int i = node->first; i < node->end; i++) {
-    const float *vector = point(b->tree, i, b->scratch);
-    float *sum = centroid(b->centroids, dims, b->label[i]);
-    if (sizes[b->label[i]]++ == 0)
-      memcpy(sum, vector, (size_t)dims * sizeof *sum);
-    else
-      for (int k = 0; k < dims; k++) sum[k] += vector[k];
-  }
   for (int c = 0; c < RC_TREE_BRANCHES; c++) {
-    float *sum = centroid(b->centroids, dims, c), part = sizes[c] ? 1.f / (float)sizes[c] : 1.f;
-    for (int k = 0; k < dims; k++) sum[k] *= part;
+    const float *sum = centroid(b->sums, dims, c);
+    float *mean = centroid(b->centroids, dims, c), part = 1.f / (float)sizes[c];
+    for (int k = 0; k < dims && sizes[c]; k++) mean[k] = sum[k] * part;
   }
 }
 
@@ -92,8 +93,8 @@ static recede_status k_means(builder *b, const rc_tree_node *node, int index,
   memset(b->label + node->first, 255, (size_t)(node->end - node->first));
   seed_centroids(b, node, index);
   for (int i = 0; i < LLOYD_ITERATIONS && changed; i++) {
-    RC_TRY(assign(b, node, &changed));
-    average(b, node, sizes);
+    RC_TRY(assign(b, node, &changed, sizes));
+    average(b, sizes);
   }
   return RECEDE_OK;
 }
@@ -151,6 +152,7 @@ recede_status rc_tree_build(rc_context *context, const rc_points *points, int st
   RC_TRY(RC_NEW(context, points->count, &b.swap));
   RC_TRY(RC_NEW(context, dims, &b.scratch));
   RC_TRY(RC_NEW(context, (size_t)RC_TREE_BRANCHES * (size_t)dims, &b.centroids));
+  RC_TRY(RC_NEW(context, (size_t)RC_TREE_BRANCHES * (size_t)dims, &b.sums));
   for (int i = 0; i < points->count; i++) tree->order[i] = i;
   tree->nodes[0] = (rc_tree_node){.first = 0, .end = points->count};
   for (int i = 0; i < tree->node_count; i++) RC_TRY(split(&b, i));
