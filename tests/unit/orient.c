@@ -342,11 +342,11 @@ static void a_failing_allocation_is_told(void) {
 
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
-  g_test_add_func("/orient/known", known_planes_are_read);
-  g_test_add_func("/orient/lawns", lawns_lean_as_they_do);
+  test_add_judged("/orient/known", known_planes_are_read);
+  test_add_judged("/orient/lawns", lawns_lean_as_they_do);
   g_test_add_func("/orient/frontal", frontal_textures_stay_frontal);
   g_test_add_func("/orient/nothing", what_tells_nothing_is_not_trusted);
-  g_test_add_func("/orient/patchworks", patchworks_are_seldom_trusted);
+  test_add_judged("/orient/patchworks", patchworks_are_seldom_trusted);
   g_test_add_func("/orient/two-planes", two_planes_are_not_trusted);
   g_test_add_func("/orient/horizon-inside", horizon_inside_the_picture);
   g_test_add_func("/orient/goes-on-beyond", what_goes_on_has_no_horizon);

@@ -4,6 +4,7 @@
 
 #include <glib.h>
 
+#include "judged.h"
 #include "recede.h"
 
 #define SIDE 384

@@ -175,6 +175,6 @@ int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   test_add_judged("/kin/things", things_stay_on_their_side);
   g_test_add_func("/kin/walker", nobody_is_copied_onto_a_road);
-  g_test_add_func("/kin/focus", what_is_in_focus_stays_so);
+  test_add_judged("/kin/focus", what_is_in_focus_stays_so);
   return g_test_run();
 }

@@ -377,7 +377,7 @@ static void converging_edges_stay(void) {
 
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
-  g_test_add_func("/lines/go-on", lines_go_on);
+  test_add_judged("/lines/go-on", lines_go_on);
   g_test_add_func("/lines/dashes", dashes_do_not_stop_it);
   g_test_add_func("/lines/others", others_do_not);
   test_add_judged("/lines/markings", markings_keep_both_edges);

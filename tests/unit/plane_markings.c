@@ -172,7 +172,7 @@ static void recede_to_a_hedge(void) {
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   g_test_add_func("/markings/go-on", go_on);
-  g_test_add_func("/markings/get-wider", get_wider);
+  test_add_judged("/markings/get-wider", get_wider);
   test_add_judged("/markings/get-narrower", get_narrower);
   test_add_judged("/markings/leave-the-picture", leave_the_picture);
   test_add_judged("/markings/recede", recede_to_a_hedge);

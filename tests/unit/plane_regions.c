@@ -185,7 +185,7 @@ int main(int argc, char **argv) {
   test_add_judged("/regions/verge", a_verge_stays_where_it_is);
   g_test_add_func("/regions/path", a_path_goes_on);
   test_add_judged("/regions/ragged", a_ragged_path_goes_on);
-  g_test_add_func("/regions/round", what_is_round_goes_round);
+  test_add_judged("/regions/round", what_is_round_goes_round);
   test_add_judged("/regions/picture-end", a_path_leaves_the_picture);
   g_test_add_func("/regions/source", a_path_that_is_no_source);
   g_test_add_func("/regions/one", one_texture_has_none);

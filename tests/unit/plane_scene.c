@@ -10,14 +10,6 @@ static gsize type_bytes(recede_type type) {
   return type == RECEDE_U8 ? 1 : type == RECEDE_FLOAT ? 4 : 2;
 }
 
-void test_add_judged(const char *path, GTestFunc judge) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  (void)path, (void)judge;
-#else
-  g_test_add_func(path, judge);
-#endif
-}
-
 picture picture_new(int width, int height, int channels, recede_type type) {
   gsize stride = (gsize)width * (gsize)channels * type_bytes(type);
   picture p = {.pixels = g_malloc0(stride * (gsize)height)};

@@ -5,6 +5,7 @@
 #include <glib.h>
 #include <stdbool.h>
 
+#include "judged.h"
 #include "recede.h"
 
 typedef struct picture {
@@ -15,10 +16,6 @@ typedef struct picture {
 typedef struct area {
   int x0, y0, x1, y1; /* x1, y1 exclusive */
 } area;
-
-/* A test that judges many fills together. Under sanitizers there is none: they watch the same code
- * in the tests of single fills. */
-void test_add_judged(const char *path, GTestFunc judge);
 
 picture picture_new(int width, int height, int channels, recede_type type);
 picture picture_copy(const picture *from);
