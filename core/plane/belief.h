@@ -2,6 +2,8 @@
 #ifndef RECEDE_PLANE_BELIEF_H
 #define RECEDE_PLANE_BELIEF_H
 
+#include <math.h>
+
 #include "plane/lean.h"
 
 /* A misfit that halves the confidence. Measured on drawn cases, where errors above 8 degrees began
@@ -18,6 +20,10 @@ static inline double rc_cost_of_ceiling(rc_lean lean) {
 /* 1 at 0, a half at half. */
 static inline double rc_falling(double value, double half) {
   return 1 / (1 + (value / half) * (value / half));
+}
+/* 0 up to from, 1 from to on. */
+static inline double rc_rising(double value, double from, double to) {
+  return fmin(1, fmax(0, (value - from) / (to - from)));
 }
 
 #endif

@@ -111,15 +111,11 @@ static double told_by_lines(const rc_readings *s) {
   return fmax(told_by_two_points(s, &s->best), TOLD_BY_ONE_POINT * told);
 }
 
-static double ramp(double value, double from, double to) {
-  return fmin(1, fmax(0, (value - from) / (to - from)));
-}
-
 /* Whether the plane recedes far, and that explains hardly anything: 0..1. */
 static double explains_little(const rc_readings *s) {
   double slant_deg = sqrt(s->best.x * s->best.x + s->best.y * s->best.y) * 180 / M_PI;
-  return ramp(slant_deg, RATHER_STEEP_DEG, STEEP_DEG) *
-         ramp(s->best.cost / s->frontal, HARDLY_BETTER, NO_BETTER_TO_TELL);
+  return rc_rising(slant_deg, RATHER_STEEP_DEG, STEEP_DEG) *
+         rc_rising(s->best.cost / s->frontal, HARDLY_BETTER, NO_BETTER_TO_TELL);
 }
 
 /* What is left unexplained must be small (a log2 power of 1 is a factor of two) and most cells must

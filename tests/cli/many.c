@@ -30,7 +30,7 @@ extern size_t __sanitizer_get_current_allocated_bytes(void) __attribute__((weak)
 static struct {
   size_t grown[MOST_GROWTHS];
   int count;
-} *looked_at; /* shared with the children */
+} * looked_at; /* shared with the children */
 
 static void look_for_leaks(size_t before) {
   size_t grown = __sanitizer_get_current_allocated_bytes() - before;
@@ -92,8 +92,8 @@ int main(void) {
   static char *words[MOST_ARGUMENTS];
   int count, status;
   if (__lsan_do_recoverable_leak_check) {
-    looked_at = mmap(NULL, sizeof *looked_at, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS,
-                     -1, 0);
+    looked_at =
+        mmap(NULL, sizeof *looked_at, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (looked_at == MAP_FAILED) return EXIT_FAILURE;
   }
   while ((count = read_words(words)) > 0) {
