@@ -77,6 +77,25 @@ static void patchworks_are_seldom_trusted(void) {
   g_free(q);
 }
 
+/* So few cells as lie beside a hole are soon explained by some steep plane. What pictures have
+ * beside their own plane are upright walls and level floors. */
+static void nothing_askew_beside_a_hole_is_trusted(void) {
+  question *q = new_question();
+  for (int n = 0; n < 30; n++) {
+    draw_clouds(n, q->gray);
+    memset(q->mask, 0, sizeof q->mask);
+    put_hole(q, (int)(300 * chance(n, 0, 1)), (int)(300 * chance(n, 0, 2)), 60, 50);
+    g_assert_cmpint(ask(q), ==, RECEDE_OK);
+    double slant = q->answer.slant_deg, tilt = q->answer.tilt_deg * (G_PI / 180);
+    double askew = fmin(fabs(sin(tilt)), fabs(cos(tilt)));
+    g_test_message("%d: slant %.0f tilt %.0f, confidence %.2f", n, slant, q->answer.tilt_deg,
+                   q->answer.confidence);
+    if (slant > 60 && askew > .45)
+      g_assert_cmpfloat(q->answer.confidence, <, RECEDE_CONFIDENCE_LOW);
+  }
+  g_free(q);
+}
+
 /* The upper half recedes upwards and the lower half downwards: no one plane is both. */
 static void two_planes_are_not_trusted(void) {
   question *q = new_question(), *other = new_question();
@@ -347,6 +366,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/orient/frontal", frontal_textures_stay_frontal);
   g_test_add_func("/orient/nothing", what_tells_nothing_is_not_trusted);
   test_add_judged("/orient/patchworks", patchworks_are_seldom_trusted);
+  test_add_judged("/orient/askew", nothing_askew_beside_a_hole_is_trusted);
   g_test_add_func("/orient/two-planes", two_planes_are_not_trusted);
   g_test_add_func("/orient/horizon-inside", horizon_inside_the_picture);
   g_test_add_func("/orient/goes-on-beyond", what_goes_on_has_no_horizon);

@@ -112,6 +112,16 @@ void draw_patchwork(int side, int n, guint8 *gray) {
   }
 }
 
+void draw_clouds(int n, guint8 *gray) {
+  for (int i = 0; i < SIDE * SIDE; i++) {
+    double x = i % SIDE, y = i / SIDE;
+    double u = x + 90 * smooth(x, y, 110, 8 * n + 200), v = y + 90 * smooth(x, y, 110, 8 * n + 201);
+    double contrast = 1.4 * smooth(x, y, 70, 8 * n + 202);
+    double value = .5 + contrast * (lawn(u + 1000 * n, v) - .5);
+    gray[i] = (guint8)(255 * fmin(fmax(value, 0), 1) + .5);
+  }
+}
+
 /* n . r: what is nearer faces more of it, for its distance. */
 static double facing(double slant, double tilt, int x, int y) {
   double s = slant * RADIAN, t = tilt * RADIAN, f = .5 * SIDE / tan(FOV * RADIAN / 2),

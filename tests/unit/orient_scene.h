@@ -19,6 +19,8 @@ double chance(int x, int y, int n);
 void draw(texture_kind kind, double slant, double tilt, double on_x, double on_y, guint8 *gray);
 /* side x side lawns seen from above, of sizes, contrasts and brightnesses by chance: no plane. */
 void draw_patchwork(int side, int n, guint8 *gray);
+/* Noise whose size and contrast drift by chance, as in clouds and nebulas: no plane. */
+void draw_clouds(int n, guint8 *gray);
 /* A floor, and a wall of the same on its left that recedes to the right, twice as far off. */
 void draw_street(guint8 *gray);
 /* Blades that stand up from a floor. */
