@@ -43,12 +43,12 @@
 /* So few cells are soon explained by some plane. Of another one than the picture's more is asked:
  * that it costs less than the frontal one there, by so much and in full by so much, unless it
  * hardly leans, and that a steep one is an upright wall or a level floor, as those are that a
- * picture has beside its plane; else so much of the belief goes. Of 34 holes in drawn walls and
- * floors right ones that lean by more than 15 degrees cost at most .78, and their normals lie by at
- * most .10 to the side and upwards both; of holes laid by chance in photos (nebulas, palms, yellow
- * paper) wrong ones cost .92 to .97 or lie by .45 to .57 both. */
-#define HARDLY_BETTER .86
-#define NO_BETTER_TO_TELL .92
+ * picture has beside its plane; else so much of the belief goes. Of holes in drawn walls and
+ * floors right ones that lean by more than 15 degrees cost at most .78, a wall of dots .89, and
+ * their normals lie by at most .10 to the side and upwards both; of holes laid by chance in photos
+ * (nebulas, palms, yellow paper) wrong ones cost .92 to .97 or lie by .45 to .57 both. */
+#define HARDLY_BETTER .89
+#define NO_BETTER_TO_TELL .93
 #define HARDLY_LEANS_DEG 15
 #define LEANS_DEG 25
 #define UPRIGHT_OR_LEVEL .2

@@ -333,8 +333,7 @@ static void check_memory(int width, int height, area masked, int channels, const
 
 static void peak_within_the_estimate(void) {
   static const char *const qualities[] = {"quality=draft", "quality=normal", "quality=best"};
-  for (int i = 0; i < 6; i++) {
-    int channels = i & 1 ? 3 : 1;
+  for (int i = 0, channels = 1; i < 6; i++, channels = 4 - channels) {
     check_memory(64, 64, (area){20, 20, 44, 44}, channels, qualities[i / 2], 1);
     check_memory(64, 64, (area){2, 2, 62, 58}, channels, qualities[i / 2], 1);
     check_memory(300, 200, (area){100, 80, 130, 120}, channels, qualities[i / 2], 1);
