@@ -96,9 +96,9 @@ class Many:
         return self
 
     def limit(self, what, most):
-        """The soft limit of a resource for the runs that follow, None for none."""
+        """The soft limit of a resource for the runs that follow."""
         _, hard = resource.getrlimit(what)
-        resource.prlimit(self.process.pid, what, (hard if most is None else most, hard))
+        resource.prlimit(self.process.pid, what, (most, hard))
 
     def __exit__(self, *_):
         self.process.stdin.close()
