@@ -41,21 +41,18 @@
 #define ALMOST 1.06
 #define LARGE_AMBIGUITY_DEG 20
 /* So few cells are soon explained by some plane. Of another one than the picture's more is asked:
- * that it costs less than the frontal one there, by so much and in full by so much, unless it
- * hardly leans, and that a steep one is an upright wall or a level floor, as those are that a
- * picture has beside its plane; else so much of the belief goes. Of holes in drawn walls and
- * floors right ones that lean by more than 15 degrees cost at most .78, a wall of dots .89, and
- * their normals lie by at most .10 to the side and upwards both; of holes laid by chance in photos
- * (nebulas, palms, yellow paper) wrong ones cost .92 to .97 or lie by .45 to .57 both. */
-#define HARDLY_BETTER .89
-#define NO_BETTER_TO_TELL .93
+ * that it explains more than the frontal one there unless it hardly leans, and that a steep one is
+ * an upright wall or a level floor, as those are that a picture has beside its plane. Of holes in
+ * drawn walls and floors right ones that lean by more than 15 degrees cost at most .78, a wall of
+ * dots .89, and their normals lie by at most .10 to the side and upwards both; of holes laid by
+ * chance in photos (nebulas, palms, yellow paper) wrong ones cost .92 to .97 or lie by .45 to .57
+ * both. */
 #define HARDLY_LEANS_DEG 15
 #define LEANS_DEG 25
 #define UPRIGHT_OR_LEVEL .2
 #define NEITHER .4
 #define RATHER_STEEP_DEG 50
 #define STEEP_DEG 60
-#define DOUBT .6
 
 typedef struct nearby {
   rc_homogeneity h;
@@ -154,7 +151,7 @@ static double by_chance(const nearby *n, rc_lean lean) {
   double normal[3], frontal = fmax(cost_of(&o, 0, 0), LEAST_COST);
   rc_lean_normal(lean, normal);
   double slant_deg = acos(fmin(1, fmax(-1, normal[2]))) * (180 / M_PI);
-  double little = rc_rising(n->closer[0].cost / frontal, HARDLY_BETTER, NO_BETTER_TO_TELL);
+  double little = rc_explains_little(n->closer[0].cost, frontal);
   double neither = rc_rising(fmin(fabs(normal[0]), fabs(normal[1])), UPRIGHT_OR_LEVEL, NEITHER);
   return fmax(little * rc_rising(slant_deg, HARDLY_LEANS_DEG, LEANS_DEG),
               neither * rc_rising(slant_deg, RATHER_STEEP_DEG, STEEP_DEG));
@@ -179,7 +176,7 @@ static void correct(const nearby *n, bool picture_raised, rc_lean *lean, double 
   if (times < DOUBTED) return;
   double surely = rc_falling(best->cost * best->cost, RC_LARGE_MISFIT * RC_LARGE_MISFIT) *
                   rc_falling(ambiguity_deg(n), LARGE_AMBIGUITY_DEG) *
-                  (1 - DOUBT * by_chance(n, found));
+                  (1 - RC_DOUBT * by_chance(n, found));
   *confidence *= fmax(0, (GIVEN_UP - times) / (GIVEN_UP - DOUBTED));
   if (surely <= *confidence) return;
   *confidence = surely;

@@ -30,14 +30,9 @@
 #define LEVEL_TRUST .53
 #define LEAST_TOLD .05
 #define LEVEL_SHARE .27
-/* A steep plane explains much that a frontal one does not, or it is read into what has no plane: it
- * is doubted from the first of these parts of the frontal plane's cost on, and by so much from the
- * second on, by which no wrong one of confidence 1 is believed. Of drawn planes right ones of more
- * than 60 degrees cost at most .89 (pebbles in photos, too), wrong ones .88 to .97, read
- * as 75 and more. */
-#define HARDLY_BETTER .89
-#define NO_BETTER_TO_TELL .93
-#define DOUBT_OF_NO_BETTER .6
+/* From where to where it counts how little a plane explains. Of drawn planes right ones of more
+ * than 60 degrees cost at most .89 of the frontal one (pebbles in photos, too), wrong ones .88 to
+ * .97, read as 75 and more. */
 #define RATHER_STEEP_DEG 60
 #define STEEP_DEG 75
 
@@ -112,10 +107,10 @@ static double told_by_lines(const rc_readings *s) {
 }
 
 /* Whether the plane recedes far, and that explains hardly anything: 0..1. */
-static double explains_little(const rc_readings *s) {
+static double steep_for_little(const rc_readings *s) {
   double slant_deg = sqrt(s->best.x * s->best.x + s->best.y * s->best.y) * 180 / M_PI;
   return rc_rising(slant_deg, RATHER_STEEP_DEG, STEEP_DEG) *
-         rc_rising(s->best.cost / s->frontal, HARDLY_BETTER, NO_BETTER_TO_TELL);
+         rc_explains_little(s->best.cost, s->frontal);
 }
 
 /* What is left unexplained must be small (a log2 power of 1 is a factor of two) and most cells must
@@ -133,5 +128,5 @@ double rc_trust(const rc_readings *s) {
                 rc_falling(ambiguity_deg(s), LARGE_AMBIGUITY_DEG);
   double trust =
       LEVEL_TRUST * rc_lean_level(rc_lean_of(&s->best)) * level_share * fmin(1, told / LEAST_TOLD);
-  return (1 - (1 - told) * (1 - trust)) * (1 - DOUBT_OF_NO_BETTER * explains_little(s));
+  return (1 - (1 - told) * (1 - trust)) * (1 - RC_DOUBT * steep_for_little(s));
 }
