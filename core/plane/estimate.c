@@ -291,6 +291,7 @@ recede_status rc_estimate_plane(rc_context *context, const rc_image *image, cons
   RC_TRY(find_best(context, s));
   RC_TRY(rc_parallel(context, RC_PARTS, ask_part, s));
   rc_lean lean = rc_lean_of(&s->r.best);
+  if (s->r.placed) RC_TRY(rc_nearby_ask(context, &s->r.model[s->r.best_model], lean, &s->r.beside));
   *confidence = rc_trust(&s->r);
   if (on && !s->r.model[RC_FLAT].chosen) /* else all of it is said to lie on the plane */
     RC_TRY(rc_nearby_correct(context, &s->r.model[RC_FLAT], s->r.best_model == RC_RAISED, &lean,

@@ -37,6 +37,8 @@
 /* Nearer planes are the same, less exactly read: boards alone are up to 18 degrees off. */
 #define ANOTHER_PLANE_DEG 25
 #define LEAST_COST 1e-3
+/* Nearer to the horizon than this part of the focal length nothing is told. */
+#define LEAST_W .02
 /* Another reading that costs no more than this tells against both; halves the confidence. */
 #define ALMOST 1.06
 #define LARGE_AMBIGUITY_DEG 20
@@ -55,7 +57,7 @@
 #define STEEP_DEG 60
 
 typedef struct nearby {
-  rc_homogeneity h;
+  rc_homogeneity h; /* of the cells that weigh something */
   rc_spectra cells;
   float *weight, *scratch; /* one scratch a thread */
   size_t scratch_size;
@@ -181,6 +183,38 @@ static void correct(const nearby *n, bool picture_raised, rc_lean *lean, double 
   if (surely <= *confidence) return;
   *confidence = surely;
   *lean = found;
+}
+
+/* The standard deviation of the scale among the cells that lie on the plane. */
+static double octaves_of(const rc_homogeneity *h, rc_lean lean) {
+  double normal[3], all = 1e-9, sum = 0, square = 0;
+  rc_lean_normal(lean, normal);
+  for (int i = 0; i < h->spectra->count; i++) {
+    double x = h->spectra->x[i] - .5 * (h->width - 1), y = h->spectra->y[i] - .5 * (h->height - 1);
+    double w = (normal[0] * x + normal[1] * y) / h->focal_px + normal[2];
+    if (w < LEAST_W) continue;
+    double weight = h->weight[i], octave = log2(w);
+    all += weight, sum += weight * octave, square += weight * octave * octave;
+  }
+  return sqrt(fmax(0, square / all - sum / all * (sum / all)));
+}
+
+recede_status rc_nearby_ask(rc_context *context, const rc_homogeneity *picture, rc_lean lean,
+                            rc_beside *beside) {
+  rc_block *mark = rc_mark(context);
+  nearby *n;
+  *beside = (rc_beside){1, 0};
+  RC_TRY(RC_NEW_ZERO(context, 1, &n));
+  RC_TRY(RC_NEW(context, picture->spectra->count, &n->weight));
+  if (weigh_nearest(picture, n->weight) >= LEAST_CELLS) {
+    RC_TRY(keep_cells(context, n, picture));
+    objective o = objective_of(n, 0);
+    double frontal = fmax(cost_of(&o, 0, 0), LEAST_COST);
+    beside->of_frontal = cost_of(&o, lean.across, lean.along) / frontal;
+    beside->octaves = octaves_of(&n->h, lean);
+  }
+  rc_release(context, mark);
+  return RECEDE_OK;
 }
 
 recede_status rc_nearby_correct(rc_context *context, const rc_homogeneity *flat, bool raised,

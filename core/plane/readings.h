@@ -15,8 +15,13 @@ enum { RC_FLAT, RC_RAISED, RC_MODELS };
 /* A plane misses half of a vanishing point that lies 3.5 degrees off it. */
 #define RC_POINT_REACH .06
 
+/* Among the cells beside what is meant: what a plane costs, of what the frontal one costs; how much
+ * the plane's scale differs there (standard deviation). */
+typedef struct rc_beside {
+  double of_frontal, octaves;
+} rc_beside;
+
 typedef struct rc_readings {
-  bool placed; /* a point is meant, and what lies beside it is asked, too */
   rc_homogeneity model[RC_MODELS];
   /* support: 0..1, how far it counts. Where the third does, the plane holds it, which lies in
    * front, and one of the others, which both lie far off; else it holds the first and the second.
@@ -27,7 +32,9 @@ typedef struct rc_readings {
   rc_point closer[RC_MODELS][RC_STARTS], part[RC_PARTS];
   int best_model;
   rc_point best;
-  double frontal; /* what the frontal plane costs */
+  double frontal;   /* what the frontal plane costs */
+  bool placed;      /* a point is meant */
+  rc_beside beside; /* it, of the best */
 } rc_readings;
 
 static inline rc_lean rc_lean_of(const rc_point *p) { return (rc_lean){p->x, p->y}; }

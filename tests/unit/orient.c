@@ -96,6 +96,27 @@ static void nothing_askew_beside_a_hole_is_trusted(void) {
   g_free(q);
 }
 
+/* A board that stands on a floor, seen from the front: the floor explains all but it, and a hole in
+ * the board is not filled as floor. */
+static void floors_are_told_beside_the_hole(void) {
+  static const texture_kind floors[] = {DOTS, NOISE, LAWN}, boards[] = {NOISE, LAWN};
+  question *q = new_question(), *board = new_question();
+  for (size_t i = 0; i < G_N_ELEMENTS(floors) * G_N_ELEMENTS(boards); i++) {
+    draw(floors[i / 2], 78, 0, .5 * SIDE, .8 * SIDE, q->gray);
+    draw(boards[i % 2], 0, 0, .5 * SIDE, .5 * SIDE, board->gray);
+    for (int y = 170; y < 320; y++)
+      memcpy(q->gray + y * SIDE + 110, board->gray + y * SIDE + 110, 150);
+    memset(q->mask, 0, sizeof q->mask);
+    put_hole(q, 160, 220, 50, 50);
+    g_assert_cmpint(ask(q), ==, RECEDE_OK);
+    g_test_message("board %d on floor %d: slant %.0f tilt %.0f, confidence %.2f", boards[i % 2],
+                   floors[i / 2], q->answer.slant_deg, q->answer.tilt_deg, q->answer.confidence);
+    if (q->answer.slant_deg > 60) g_assert_cmpfloat(q->answer.confidence, <, RECEDE_CONFIDENCE_LOW);
+  }
+  g_free(board);
+  g_free(q);
+}
+
 /* The upper half recedes upwards and the lower half downwards: no one plane is both. */
 static void two_planes_are_not_trusted(void) {
   question *q = new_question(), *other = new_question();
@@ -366,6 +387,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/orient/frontal", frontal_textures_stay_frontal);
   g_test_add_func("/orient/nothing", what_tells_nothing_is_not_trusted);
   test_add_judged("/orient/patchworks", patchworks_are_seldom_trusted);
+  test_add_judged("/orient/told-beside", floors_are_told_beside_the_hole);
   test_add_judged("/orient/askew", nothing_askew_beside_a_hole_is_trusted);
   g_test_add_func("/orient/two-planes", two_planes_are_not_trusted);
   g_test_add_func("/orient/horizon-inside", horizon_inside_the_picture);
