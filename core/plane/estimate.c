@@ -293,12 +293,11 @@ recede_status rc_estimate_plane(rc_context *context, const rc_image *image, cons
   rc_lean lean = rc_lean_of(&s->r.best);
   if (s->r.placed) RC_TRY(rc_nearby_ask(context, &s->r.model[s->r.best_model], lean, &s->r.beside));
   *confidence = rc_trust(&s->r);
-  if (on && !s->r.model[RC_FLAT].chosen) /* else all of it is said to lie on the plane */
+  if (s->r.placed) /* else all of it is said to lie on the plane */
     RC_TRY(rc_nearby_correct(context, &s->r.model[RC_FLAT], s->r.best_model == RC_RAISED, &lean,
                              confidence));
   rc_lean_normal(lean, plane->normal);
-  if (on && !s->r.model[RC_FLAT].chosen)
-    RC_TRY(doubt_horizon(context, image, flags, plane, confidence));
+  if (s->r.placed) RC_TRY(doubt_horizon(context, image, flags, plane, confidence));
   rc_release(context, mark);
   return RECEDE_OK;
 }

@@ -18,7 +18,6 @@
 #define BINS (STEPS * TURNS)
 _Static_assert(BINS % 4 == 0, "four at once");
 
-#define IMPOSSIBLE 99.
 #define EXCUSED_CONTRAST .5f
 #define ROUNDS 4
 /* Cells that have too few values in common with the rest speak against the plane, as a third of a
@@ -32,8 +31,6 @@ _Static_assert(BINS % 4 == 0, "four at once");
 #define CHOSEN_MISSING_COST .5
 #define CHOSEN_HORIZON_COST .8
 #define LEAST_SHARE .3
-/* w over that at the reference, below which a cell is too near the horizon to be resolved. */
-#define LEAST_W .08
 
 /* Scratch: values[count][BINS], there[count][BINS] (1 or 0), then what follows. */
 typedef struct work {
@@ -131,7 +128,7 @@ static bool sample(const rc_homogeneity *h, rc_lean lean, const work *to) {
     to->contrast[i] = 0;
     to->misfit[i] = INFINITY;
     to->trust[i] = 0;
-    if (w < (float)LEAST_W) continue;
+    if (w < (float)RC_RESOLVED_W) continue;
     int bins = pull_back(&h->spectra->power[i], &plane, dx, dy, w, l, h->raised,
                          to->values + (size_t)i * BINS, to->there + (size_t)i * BINS);
     to->misfit[i] = NAN;
@@ -208,7 +205,7 @@ static double total_cost(const rc_homogeneity *h, const work *w) {
     }
   }
   double all = judged + missing + beyond;
-  if (judged < LEAST_SHARE * all || judged == 0) return IMPOSSIBLE;
+  if (judged < LEAST_SHARE * all || judged == 0) return RC_IMPOSSIBLE;
   double missing_cost = h->chosen ? CHOSEN_MISSING_COST : MISSING_COST;
   double horizon_cost = h->chosen ? CHOSEN_HORIZON_COST : SKY_COST;
   return (judged_cost + h->saturation * (missing * missing_cost + beyond * horizon_cost)) / all;
@@ -217,7 +214,7 @@ static double total_cost(const rc_homogeneity *h, const work *w) {
 double rc_homogeneity_cost(const rc_homogeneity *h, rc_lean lean, float *scratch, float *misfit) {
   int count = h->spectra->count;
   work w = lay_out(scratch, (size_t)count);
-  if (!sample(h, lean, &w)) return IMPOSSIBLE;
+  if (!sample(h, lean, &w)) return RC_IMPOSSIBLE;
   for (int round = 0; round < ROUNDS; round++) {
     take_mean(h, &w);
     take_importance(&w);

@@ -16,9 +16,14 @@ typedef struct rc_homogeneity {
   float saturation;    /* a cell's squared misfit from which on it counts as not of the plane */
 } rc_homogeneity;
 
+/* w over that at the reference, below which a cell is too near the horizon to be resolved. */
+#define RC_RESOLVED_W .08
+/* What a plane costs that leaves too little to compare. */
+#define RC_IMPOSSIBLE 99.
+
 /* Bytes of scratch memory that one call of rc_homogeneity_cost() needs. */
 size_t rc_homogeneity_scratch(const rc_homogeneity *h);
-/* Mean squared misfit in log2 of power, outliers saturated; large where the plane is impossible.
+/* Mean squared misfit in log2 of power, outliers saturated, or RC_IMPOSSIBLE.
  * misfit (may be NULL): that of every cell, NaN where the plane leaves too little to compare,
  * infinite beyond the horizon. */
 double rc_homogeneity_cost(const rc_homogeneity *h, rc_lean lean, float *scratch, float *misfit);

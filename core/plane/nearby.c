@@ -37,8 +37,6 @@
 /* Nearer planes are the same, less exactly read: boards alone are up to 18 degrees off. */
 #define ANOTHER_PLANE_DEG 25
 #define LEAST_COST 1e-3
-/* Nearer to the horizon than this part of the focal length nothing is told. */
-#define LEAST_W .02
 /* Another reading that costs no more than this tells against both; halves the confidence. */
 #define ALMOST 1.06
 #define LARGE_AMBIGUITY_DEG 20
@@ -136,6 +134,18 @@ static recede_status keep_cells(rc_context *context, nearby *n, const rc_homogen
   return RC_NEW(context, n->scratch_size * (size_t)context->threads, &n->scratch);
 }
 
+/* NULL: they are too few. */
+static recede_status gather(rc_context *context, const rc_homogeneity *all, nearby **to) {
+  nearby *n;
+  *to = NULL;
+  RC_TRY(RC_NEW_ZERO(context, 1, &n));
+  RC_TRY(RC_NEW(context, all->spectra->count, &n->weight));
+  if (weigh_nearest(all, n->weight) < LEAST_CELLS) return RECEDE_OK;
+  RC_TRY(keep_cells(context, n, all));
+  *to = n;
+  return RECEDE_OK;
+}
+
 /* The farthest other reading that explains the cells almost as well. */
 static double ambiguity_deg(const nearby *n) {
   double farthest = 0;
@@ -185,14 +195,15 @@ static void correct(const nearby *n, bool picture_raised, rc_lean *lean, double 
   *lean = found;
 }
 
-/* The standard deviation of the scale among the cells that lie on the plane. */
+/* The standard deviation of the plane's scale among the cells that it is compared in. */
 static double octaves_of(const rc_homogeneity *h, rc_lean lean) {
-  double normal[3], all = 1e-9, sum = 0, square = 0;
-  rc_lean_normal(lean, normal);
+  recede_plane plane = {.width = h->width, .height = h->height, .focal_px = h->focal_px};
+  rc_lean_normal(lean, plane.normal);
+  double at_reference = recede_plane_w(&plane, h->ref_x, h->ref_y);
+  double all = 1e-9, sum = 0, square = 0;
   for (int i = 0; i < h->spectra->count; i++) {
-    double x = h->spectra->x[i] - .5 * (h->width - 1), y = h->spectra->y[i] - .5 * (h->height - 1);
-    double w = (normal[0] * x + normal[1] * y) / h->focal_px + normal[2];
-    if (w < LEAST_W) continue;
+    double w = recede_plane_w(&plane, h->spectra->x[i], h->spectra->y[i]) / at_reference;
+    if (w < RC_RESOLVED_W) continue;
     double weight = h->weight[i], octave = log2(w);
     all += weight, sum += weight * octave, square += weight * octave * octave;
   }
@@ -204,14 +215,12 @@ recede_status rc_nearby_ask(rc_context *context, const rc_homogeneity *picture, 
   rc_block *mark = rc_mark(context);
   nearby *n;
   *beside = (rc_beside){1, 0};
-  RC_TRY(RC_NEW_ZERO(context, 1, &n));
-  RC_TRY(RC_NEW(context, picture->spectra->count, &n->weight));
-  if (weigh_nearest(picture, n->weight) >= LEAST_CELLS) {
-    RC_TRY(keep_cells(context, n, picture));
+  RC_TRY(gather(context, picture, &n));
+  if (n) {
     objective o = objective_of(n, 0);
-    double frontal = fmax(cost_of(&o, 0, 0), LEAST_COST);
-    beside->of_frontal = cost_of(&o, lean.across, lean.along) / frontal;
-    beside->octaves = octaves_of(&n->h, lean);
+    double cost = cost_of(&o, lean.across, lean.along), frontal = cost_of(&o, 0, 0);
+    if (cost < RC_IMPOSSIBLE && frontal < RC_IMPOSSIBLE)
+      *beside = (rc_beside){cost / fmax(frontal, LEAST_COST), octaves_of(&n->h, lean)};
   }
   rc_release(context, mark);
   return RECEDE_OK;
@@ -221,10 +230,8 @@ recede_status rc_nearby_correct(rc_context *context, const rc_homogeneity *flat,
                                 rc_lean *lean, double *confidence) {
   rc_block *mark = rc_mark(context);
   nearby *n;
-  RC_TRY(RC_NEW_ZERO(context, 1, &n));
-  RC_TRY(RC_NEW(context, flat->spectra->count, &n->weight));
-  if (weigh_nearest(flat, n->weight) >= LEAST_CELLS) {
-    RC_TRY(keep_cells(context, n, flat));
+  RC_TRY(gather(context, flat, &n));
+  if (n) {
     RC_TRY(rc_parallel(context, RC_COARSE_LEANS, look, n));
     rc_points_to_front(n->coarse, RC_COARSE_LEANS, STARTS);
     RC_TRY(rc_parallel(context, STARTS, look_closer, n));

@@ -15,8 +15,8 @@ enum { RC_FLAT, RC_RAISED, RC_MODELS };
 /* A plane misses half of a vanishing point that lies 3.5 degrees off it. */
 #define RC_POINT_REACH .06
 
-/* Among the cells beside what is meant: what a plane costs, of what the frontal one costs; how much
- * the plane's scale differs there (standard deviation). */
+/* Among the cells beside what is meant: what a plane costs, as a part of what the frontal one
+ * costs; how much the plane's scale differs there (standard deviation). */
 typedef struct rc_beside {
   double of_frontal, octaves;
 } rc_beside;
@@ -33,8 +33,8 @@ typedef struct rc_readings {
   int best_model;
   rc_point best;
   double frontal;   /* what the frontal plane costs */
-  bool placed;      /* a point is meant */
-  rc_beside beside; /* it, of the best */
+  bool placed;      /* a point is meant, and what lies beside it is asked, too */
+  rc_beside beside; /* what that says of the best; where nothing is asked, not set */
 } rc_readings;
 
 static inline rc_lean rc_lean_of(const rc_point *p) { return (rc_lean){p->x, p->y}; }

@@ -36,14 +36,15 @@
 #define RATHER_STEEP_DEG 60
 #define STEEP_DEG 75
 /* Where a point is meant: from the first of these parts of the frontal plane's cost beside it on
- * what lies there supports the best plane less and less, from the second on not at all. */
-#define SUPPORTED .88
-#define UNSUPPORTED .92
+ * what lies there speaks against the best plane more and more, from the second on in full. */
+#define EXPLAINED .88
+#define HARDLY_EXPLAINED .92
 /* And from where to where a steep one is doubted, for it explains nothing there. */
 #define NOT_BETTER .97
 #define WORSE 1.01
-/* That tells where the plane's scale differs by so much beside the point (among pebbles in the
- * foreground by .27 to .56, and these cost .93 to 1.01 of it), or where it costs even more. */
+/* That tells where the plane's scale differs by so much beside the point, or where it costs even
+ * more: among pebbles in the foreground by .27 to .56, and it costs .93 to 1.01 of the frontal one.
+ */
 #define ALIKE_OCTAVES .35
 #define UNLIKE_OCTAVES .6
 #define COSTS_MORE 1.03
@@ -80,8 +81,9 @@ static double told_by_two_points(const rc_readings *s, const rc_point *reading) 
   return has_third(s) ? fmin(told[2], fmax(told[0], told[1])) : fmin(told[0], told[1]);
 }
 
-/* How far the best plane is told by what lies beside the point in vain: 0 where lines tell it. */
-static double untold_beside(const rc_readings *s, double lines, double from, double to) {
+/* How far what lies beside the point speaks against the best plane: not where lines tell it, as one
+ * point in front does. */
+static double against_beside(const rc_readings *s, double lines, double from, double to) {
   return rc_rising(s->beside.of_frontal, from, to) *
          fmax(rc_rising(s->beside.octaves, ALIKE_OCTAVES, UNLIKE_OCTAVES),
               rc_rising(s->beside.of_frontal, COSTS_MORE, COSTS_MUCH_MORE)) *
@@ -89,15 +91,16 @@ static double untold_beside(const rc_readings *s, double lines, double from, dou
 }
 
 /* The farthest other reading that explains the picture almost as well, and lines no worse. Where
- * what lies beside the hole supports the best, what is less likely must explain more. */
+ * what lies beside the hole is asked, and does not speak against the best, what is less likely must
+ * explain more. */
 static double ambiguity_deg(const rc_readings *s, double lines) {
   double farthest = 0, told = told_by_two_points(s, &s->best);
-  double support = s->placed ? 1 - untold_beside(s, lines, SUPPORTED, UNSUPPORTED) : 0;
+  double asked = s->placed ? 1 - against_beside(s, lines, EXPLAINED, HARDLY_EXPLAINED) : 0;
   for (int m = 0; m < RC_MODELS; m++)
     for (int i = 0; i < RC_STARTS; i++) {
       const rc_point *other = &s->closer[m][i];
       double more = rc_times_unlikely(other) / rc_times_unlikely(&s->best);
-      if ((1 + support * fmax(0, more - 1)) * other->cost >= ALMOST * s->best.cost ||
+      if ((1 + asked * fmax(0, more - 1)) * other->cost >= ALMOST * s->best.cost ||
           told - told_by_two_points(s, other) > TOLD_SO_MUCH_BETTER)
         continue;
       farthest = fmax(farthest, rc_lean_degrees(rc_lean_of(&s->best), rc_lean_of(other)));
@@ -131,7 +134,7 @@ static double told_by_lines(const rc_readings *s) {
 /* Whether the plane recedes far, and that explains hardly anything: 0..1. */
 static double steep_for_little(const rc_readings *s, double lines) {
   double slant_deg = sqrt(s->best.x * s->best.x + s->best.y * s->best.y) * 180 / M_PI;
-  double beside = s->placed ? untold_beside(s, lines, NOT_BETTER, WORSE) : 0;
+  double beside = s->placed ? against_beside(s, lines, NOT_BETTER, WORSE) : 0;
   return rc_rising(slant_deg, RATHER_STEEP_DEG, STEEP_DEG) *
          fmax(rc_explains_little(s->best.cost, s->frontal), beside);
 }
