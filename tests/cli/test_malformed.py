@@ -145,21 +145,21 @@ def test_damaged_metadata(folder):
                         f"-ThumbnailImage<={write(folder / 'small.jpg', texture(12, 16))}",
                         str(image)], check=True)
         data = image.read_bytes()
-        for number in range(0, 16, 5 if harness.SANITIZED else 1):
-            damaged = bytearray(data)
-            # JPEG and PNG have them first (PNG after IHDR), TIFF last.
-            last = len(data) if suffix == "tif" else 700
-            for _ in range(1 + number // 4):
-                place = source.randrange(max(0, last - 700), last)
-                damaged[place] = source.choice((0, 255, 1, 127))
-            image.write_bytes(damaged)
-            target = ("png", "jpg", "tif")[number % 3]
-            done = harness.recede("fill", image, "--mask", mask, "--frontal", "-q", "--force", "-o",
-                                  folder / f"out.{target}", code=None, prepare=limit,
-                                  environment=LEAKS_OF_OTHERS)
-            check(done.returncode in (0, 3), suffix, number, "ended with", done.returncode)
-            if done.returncode == 0:
-                harness.read(folder / f"out.{target}")
+        with commands(folder) as many:
+            for number in range(0, 16, 5 if harness.SANITIZED else 1):
+                damaged = bytearray(data)
+                # JPEG and PNG have them first (PNG after IHDR), TIFF last.
+                last = len(data) if suffix == "tif" else 700
+                for _ in range(1 + number // 4):
+                    place = source.randrange(max(0, last - 700), last)
+                    damaged[place] = source.choice((0, 255, 1, 127))
+                image.write_bytes(damaged)
+                out = folder / f"out.{('png', 'jpg', 'tif')[number % 3]}"
+                done = many.run("fill", image, "--mask", mask, "--frontal", "-q", "--force", "-o",
+                                out)
+                check(done.returncode in (0, 3), suffix, number, "ended with", done.returncode)
+                if done.returncode == 0:
+                    harness.read(out)
 
 
 def exif_of(entries):
