@@ -34,7 +34,7 @@ typedef struct rc_readings {
   rc_point best;
   double frontal;   /* what the frontal plane costs */
   bool placed;      /* a point is meant, and what lies beside it is asked, too */
-  rc_beside beside; /* what that says of the best; where nothing is asked, not set */
+  rc_beside beside; /* what that says of the best; all 0 where nothing is asked */
 } rc_readings;
 
 static inline rc_lean rc_lean_of(const rc_point *p) { return (rc_lean){p->x, p->y}; }

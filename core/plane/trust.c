@@ -134,9 +134,9 @@ static double told_by_lines(const rc_readings *s) {
 /* Whether the plane recedes far, and that explains hardly anything: 0..1. */
 static double steep_for_little(const rc_readings *s, double lines) {
   double slant_deg = sqrt(s->best.x * s->best.x + s->best.y * s->best.y) * 180 / M_PI;
-  double beside = s->placed ? against_beside(s, lines, NOT_BETTER, WORSE) : 0;
   return rc_rising(slant_deg, RATHER_STEEP_DEG, STEEP_DEG) *
-         fmax(rc_explains_little(s->best.cost, s->frontal), beside);
+         fmax(rc_explains_little(s->best.cost, s->frontal),
+              against_beside(s, lines, NOT_BETTER, WORSE));
 }
 
 /* What is left unexplained must be small (a log2 power of 1 is a factor of two) and most cells must
