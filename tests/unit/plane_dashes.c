@@ -15,13 +15,16 @@
 
 /* Beyond this there is no dash. */
 static double end;
+/* Paint gets so much fainter with each texel. */
+static double haze;
 
 /* Asphalt, three rows of dashes and, far to the right, a solid line. */
 static double road(double u, double v, int k) {
   double grain = noise_at((int)floor(u * 12), (int)floor(v * 12), 40), color = .35 + .08 * grain;
   double along = v + 1 - PERIOD * floor((v + 1) / PERIOD);
   bool in_row = fabs(u) < .15 || fabs(fabs(u) - LANE) < .15;
-  if ((in_row && along < DASH && v < end) || fabs(u - 2 * LANE) < .12) color = PAINT;
+  if ((in_row && along < DASH && v < end) || fabs(u - 2 * LANE) < .12)
+    color = color + (PAINT - color) * exp(-haze * (v + 12));
   return color + .01 * k;
 }
 
@@ -113,6 +116,35 @@ static void may_be_taken_away(void) {
   }
 }
 
+/* A dash that the hole cuts is made whole of what is left of it, where all others are far and
+ * faint.
+ */
+static void cut_ones_are_made_whole(void) {
+  static const struct {
+    area hole, dash;
+  } cut[] = {{{250, 300, 390, 435}, {300, 410, 340, 470}},  /* its far end */
+             {{250, 440, 390, 480}, {300, 410, 340, 470}},  /* its near one */
+             {{90, 300, 230, 440}, {110, 410, 160, 470}},   /* and of one that leans */
+             {{250, 430, 390, 450}, {300, 410, 340, 470}}}; /* its middle */
+  end = INFINITY, haze = .08;
+  for (int i = 0; i < (int)G_N_ELEMENTS(cut); i++) {
+    picture truth = draw_road(0);
+    task t = task_new(picture_copy(&truth), "surface=flat quality=draft");
+    t.params.slant_deg = SLANT_DEG;
+    task_hole(&t, cut[i].hole);
+    task_succeeds(&t);
+    task_assert_outside(&t);
+    paint p = task_paint(&t, &truth, cut[i].dash);
+    g_test_message("hole at %d,%d: %.0f of %.0f px", cut[i].hole.x0, cut[i].hole.y0, p.right,
+                   p.all);
+    task_clear(&t);
+    picture_clear(&truth);
+    g_assert_cmpfloat(p.all, >, 100);
+    g_assert_cmpfloat(p.right, >, .85 * p.all);
+  }
+  haze = 0;
+}
+
 /* A line that cuts a corner off a hole leaves it at flat angles. */
 static void lines_cut_corners(void) {
   static const area hole = {420, 180, 560, 300};
@@ -149,6 +181,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/dashes/end", end_where_they_end);
   g_test_add_func("/dashes/near", near_ones_are_not_missed);
   g_test_add_func("/dashes/away", may_be_taken_away);
+  g_test_add_func("/dashes/cut", cut_ones_are_made_whole);
   g_test_add_func("/dashes/corner", lines_cut_corners);
   g_test_add_func("/dashes/walls", walls_have_none);
   return g_test_run();

@@ -212,14 +212,19 @@ recede_status rc_dash_rows_choose(rc_context *context, const rc_dashes *dashes,
                                   const rc_mask *flags, int exponent, rc_dash_rows *rows) {
   chooser c = {dashes, flags, &rows->ground, exponent};
   end_together(rows);
-  for (int i = 0; i < rows->count; i++) {
+  int found = rows->count;
+  for (int i = 0; i < found; i++) {
     rc_dash_row *row = &rows->rows[i];
     row->laid_count = 0;
     for (int n = row->low; n <= row->high && row->laid_count < RC_MOST_IN_ROW; n++) {
       rc_dash_laid laid = {.number = n};
-      if (is_hidden(&c, row, n) && !is_to_go(&c, row, n) && choose(&c, rows, row, n, &laid))
-        row->laid[row->laid_count++] = laid;
       RC_TRY(rc_poll(context));
+      if (!is_hidden(&c, row, n) || is_to_go(&c, row, n)) continue;
+      if (choose(&c, rows, row, n, &laid))
+        row->laid[row->laid_count++] = laid;
+      else if (rows->count < RC_MOST_DASH_ROWS)
+        rows->count +=
+            rc_dash_of_rest(dashes, rows, flags, exponent, row, n, &rows->rows[rows->count]);
     }
   }
   return RECEDE_OK;

@@ -3,10 +3,8 @@
 #include "synthesis/structure/dash_row.h"
 #include "synthesis/structure/dash_rows.h"
 
-/* A dash is laid so many times as wide and long as it is, and so many px of the finest level (at
- * least of the own level) more on each side: the join needs it. It is taken as it is, and as many
- * more. */
-#define TIMES_LAID 1.3
+/* A dash is laid so many px of the finest level (at least of the own level) wider on each side than
+ * RC_DASH_TIMES_LAID. It is taken as it is, and as many more. */
 #define MARGIN_PX 4.
 #define LEAST_MARGIN_PX 1.
 
@@ -61,17 +59,32 @@ void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *fl
 
 rc_box rc_dash_laid_box(const rc_ground *ground, const rc_dash_row *row, const rc_dash_laid *laid,
                         rc_box within) {
-  return rc_dash_box(ground, row, laid->number, 0, TIMES_LAID, TIMES_LAID, MARGIN_PX, within);
+  return rc_dash_box(ground, row, laid->number, 0, RC_DASH_TIMES_LAID, RC_DASH_TIMES_LAID,
+                     MARGIN_PX, within);
+}
+
+/* Where what is laid at a place along a row comes from. A rest is laid from the end that is due
+ * backwards, for only so the paint ends as it does where it is seen; and its farther half to and
+ * fro where it is shorter than what is hidden. */
+static double come_from(const rc_dash_row *row, const rc_dash_laid *laid, double along) {
+  double from_end = .5 * row->length - along, half = .5 * laid->rest;
+  if (from_end > half) from_end = half + fabs(remainder(from_end - half, 2 * half));
+  return from_end - .5 * row->length;
 }
 
 bool rc_dash_laid_copy(const rc_ground *ground, const rc_dash_row *row, const rc_dash_laid *laid,
                        const rc_chart *chart, float x, float y, rc_copy *copy) {
   double at_x = (double)x + ground->x0, at_y = (double)y + ground->y0, from_x, from_y, u, v, w;
-  if (!lies_in(ground, row, laid->number, at_x, at_y, TIMES_LAID, MARGIN_PX) ||
+  if (!lies_in(ground, row, laid->number, at_x, at_y, RC_DASH_TIMES_LAID, MARGIN_PX) ||
       !rc_ground_place(ground, 0, at_x, at_y, &u, &v, &w))
     return false;
-  double t = rc_dash_place(row, laid->number);
-  u += laid->u - row->u - t * row->a, v += laid->v - row->v - t * row->b;
+  if (laid->rest > 0) {
+    double along = rc_dash_along(row, u, v), by = come_from(row, laid, along) - along;
+    u += by * row->a, v += by * row->b;
+  } else {
+    double t = rc_dash_place(row, laid->number);
+    u += laid->u - row->u - t * row->a, v += laid->v - row->v - t * row->b;
+  }
   if (!rc_ground_px(ground, 0, u, v, &from_x, &from_y, &w)) return false;
   *copy = rc_copy_exact(chart, x, y, (float)(from_x - ground->x0), (float)(from_y - ground->y0));
   return true;

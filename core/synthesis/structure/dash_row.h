@@ -12,6 +12,11 @@
 /* What makes dashes of one row, or of rows side by side, alike. */
 #define RC_DASHES_MOST_LONGER 1.6
 #define RC_DASHES_PARALLEL .99 /* cosine of 8 degrees */
+/* They lie on its line within this part of their length, and so many px of the finest level. */
+#define RC_DASHES_OFF_LINE .1
+#define RC_DASHES_OFF_LINE_PX 1.5
+/* A dash is laid so many times as wide and long as it is: the join needs it. */
+#define RC_DASH_TIMES_LAID 1.3
 
 /* Of a place in the plane, how far it lies along the row's line, and off it to its side. */
 static inline double rc_dash_along(const rc_dash_row *row, double u, double v) {
@@ -42,6 +47,32 @@ static inline bool rc_dashes_alike(const rc_dash_row *row, double length, double
          row->length < RC_DASHES_MOST_LONGER * length &&
          fabs(a * row->a + b * row->b) > RC_DASHES_PARALLEL;
 }
+
+static inline bool rc_dash_lies_on(const rc_dash_row *row, double u, double v, double w) {
+  return fabs(rc_dash_across(row, u, v)) <
+         RC_DASHES_OFF_LINE * row->length + RC_DASHES_OFF_LINE_PX / w;
+}
+
+/* What is left of a dash of a row that the hole or the picture's end cuts. */
+typedef struct rc_dash_rest {
+  double u, v; /* its middle */
+  double length, width;
+  double towards; /* 1: it is cut farther along the row; -1: nearer */
+} rc_dash_rest;
+
+/* False: it is none of one of the row's. */
+bool rc_dash_rest_of(const rc_dash_row *row, const rc_dash *dash, rc_dash_rest *rest);
+/* Where the middle of the whole one lies. */
+void rc_dash_rest_middle(const rc_dash_row *row, const rc_dash_rest *rest, double *u, double *v);
+/* A row of that dash alone, so long, as the rest lies: from the end that is seen to where the other
+ * is due. False: too little of it may be copied. */
+bool rc_dash_alone(const rc_dashes *dashes, const rc_ground *ground, const rc_mask *flags,
+                   int exponent, const rc_dash_row *row, double length, const rc_dash_rest *rest,
+                   rc_dash_row *own);
+/* A row's n-th alone, made of its own rest. False: there is none, or too little of it may be
+ * copied. */
+bool rc_dash_of_rest(const rc_dashes *dashes, const rc_dash_rows *rows, const rc_mask *flags,
+                     int exponent, const rc_dash_row *row, int n, rc_dash_row *own);
 
 /* Around a row's n-th, so many times as long and wide and a margin more, px of a level. */
 rc_box rc_dash_box(const rc_ground *ground, const rc_dash_row *row, int n, int exponent,

@@ -7,25 +7,21 @@
 #include "base/spread.h"
 #include "synthesis/structure/dash_row.h"
 
-/* Dashes lie on their line within this part of their length, and so many px of the finest level. */
-#define OFF_LINE .1
-#define OFF_LINE_PX 1.5
-/* And where they are due within this part of the period, less strictly while the ground is not
- * known; far away, so many px of the level and at the most this part. */
+/* Dashes lie where they are due within this part of the period, less strictly while the ground is
+ * not known; far away, so many px of the level and at the most this part. */
 #define OFF_PERIOD .1
 #define OFF_WHILE_DRIFTING .16
 #define OFF_PLACE_PX 1.5
 #define MOST_OFF_PERIOD .3
-/* The rest of a dash that the hole or the picture's end cuts off is so wide, and of the whole one's
- * length at least so much; it is cut away from its middle by so much of its own. */
-#define MOST_WIDER 1.6
-#define LEAST_REST .15
-#define LEAST_TO_CUT .25
 #define SHORTEST_PERIOD 1.25 /* of a dash */
 #define LONGEST_PERIOD 12.
-/* A row is told by so many dashes, and for each that is missing where it could be seen there must
- * be so many more. One beside such a row, with its dashes and period, by a single one. */
+/* A row is told by so many dashes, of which one may be seen in part, and for each that is missing
+ * where it could be seen there must be so many more. One beside such a row, with its dashes and
+ * period, by a single one. */
 #define LEAST_DASHES 3
+/* What is seen in part tells half as much, and nothing beside so many that are seen. */
+#define OF_SEEN 2
+#define ENOUGH_SEEN 4
 /* Between them, from so much of a dash's length from its middle, hardly anything stands out by more
  * than this part of what they do; and across their ends nothing does along most of their length, as
  * a wall's joints would. Places that are looked at. */
@@ -61,33 +57,65 @@ typedef struct looked {
 } looked;
 
 static bool lies_on(const rc_dash_row *row, const rc_dash *d) {
-  return fabs(rc_dash_across(row, d->u, d->v)) < OFF_LINE * row->length + OFF_LINE_PX / d->w;
+  return rc_dash_lies_on(row, d->u, d->v, d->w);
 }
 
-/* Whether it is wholly seen where the row's n-th is due. */
-static bool is_one_of(const finder *f, const rc_dash_row *row, const rc_dash *d, int *n) {
-  double t = rc_dash_along(row, d->u, d->v), x, y, due_x, due_y, w;
-  if (!d->complete || !rc_dashes_alike(row, d->length, d->a, d->b) || !lies_on(row, d))
-    return false;
+/* Where its middle lies, or that of the one of which it is the rest. False: it is unlike the row's.
+ */
+static bool middle_of(const rc_dash_row *row, const rc_dash *d, double *u, double *v) {
+  rc_dash_rest rest;
+  *u = d->u, *v = d->v;
+  if (d->complete) return rc_dashes_alike(row, d->length, d->a, d->b);
+  if (!rc_dash_rest_of(row, d, &rest)) return false;
+  rc_dash_rest_middle(row, &rest, u, v);
+  return true;
+}
+
+/* Whether it is seen, or its rest is, where the row's n-th is due; its middle lies there. A rest
+ * tells that only roughly: its own length is the row's at best. */
+static bool is_one_of(const finder *f, const rc_dash_row *row, const rc_dash *d, int *n, double *u,
+                      double *v) {
+  double x, y, due_x, due_y, w;
+  if (!middle_of(row, d, u, v) || !lies_on(row, d)) return false;
+  double t = rc_dash_along(row, *u, *v);
   *n = rc_dash_number(row, t);
   double due = rc_dash_place(row, *n), period = fabs(rc_dash_place(row, *n + 1) - due);
   if (!isfinite(due)) return false;
   if (fabs(t - due) <= (f->drifts ? OFF_WHILE_DRIFTING : OFF_PERIOD) * period) return true;
   return fabs(t - due) <= MOST_OFF_PERIOD * period &&
-         rc_ground_px(&f->ground, f->exponent, d->u, d->v, &x, &y, &w) &&
+         rc_ground_px(&f->ground, f->exponent, *u, *v, &x, &y, &w) &&
          rc_dash_px(&f->ground, f->exponent, row, due, 0, &due_x, &due_y, &w) &&
          rc_distance(x - due_x, y - due_y) <= OFF_PLACE_PX;
 }
 
-static void gather(const finder *f, rc_dash_row *row) {
-  row->seen_count = 0;
-  for (int i = 0, n; i < f->dashes.count && row->seen_count < RC_MOST_IN_ROW; i++) {
-    if (!is_one_of(f, row, &f->dashes.found[i], &n)) continue;
-    bool again = false;
-    for (int k = 0; k < row->seen_count; k++) again |= row->seen[k] == n;
-    if (!again) row->seen[row->seen_count++] = n;
-  }
+static bool is_among(const int *numbers, int count, int n) {
+  for (int k = 0; k < count; k++)
+    if (numbers[k] == n) return true;
+  return false;
 }
+
+static void gather(const finder *f, rc_dash_row *row) {
+  int rests[RC_MOST_IN_ROW], n;
+  double u, v;
+  row->seen_count = row->rest_count = 0;
+  for (int i = 0; i < f->dashes.count; i++) {
+    const rc_dash *d = &f->dashes.found[i];
+    int *numbers = d->complete ? row->seen : rests;
+    int *count = d->complete ? &row->seen_count : &row->rest_count;
+    if (*count < RC_MOST_IN_ROW && is_one_of(f, row, d, &n, &u, &v) &&
+        !is_among(numbers, *count, n))
+      numbers[(*count)++] = n;
+  }
+  if (row->seen_count >= ENOUGH_SEEN) row->rest_count = 0;
+}
+
+/* Whether it tells where the row's n-th is. */
+static bool tells(const finder *f, const rc_dash_row *row, const rc_dash *d, int *n, double *u,
+                  double *v) {
+  return (d->complete || row->rest_count > 0) && is_one_of(f, row, d, n, u, v);
+}
+
+static int told_by(const rc_dash_row *row) { return row->seen_count + row->rest_count; }
 
 /* Whether a row's n-th dash would be seen if it were there. */
 static bool would_be_seen(const finder *f, const rc_dash_row *row, int n) {
@@ -182,8 +210,9 @@ static void fit_line(const finder *f, rc_dash_row *row) {
   for (int pass = 0, n; pass < 2; pass++)
     for (int i = 0; i < f->dashes.count; i++) {
       const rc_dash *d = &f->dashes.found[i];
-      if (!is_one_of(f, row, d, &n)) continue;
-      double q = d->w * d->w, du = d->u - mu, dv = d->v - mv;
+      double u, v;
+      if (!tells(f, row, d, &n, &u, &v)) continue;
+      double q = d->w * d->w, du = u - mu, dv = v - mv;
       if (pass)
         uu += q * du * du, uv += q * du * dv, vv += q * dv * dv;
       else
@@ -199,12 +228,13 @@ static void fit_line(const finder *f, rc_dash_row *row) {
 
 /* And where they are due along it: of the n-th of places t, t (1 + n drift) = first + n period. */
 static void fit_places(const finder *f, rc_dash_row *row) {
-  int unknown = f->drifts && row->seen_count >= LEAST_DRIFTING ? 3 : 2;
+  int unknown = f->drifts && told_by(row) >= LEAST_DRIFTING ? 3 : 2;
   double m[9] = {0}, v[3] = {0}, scale = row->period;
   for (int i = 0, n; i < f->dashes.count; i++) {
     const rc_dash *d = &f->dashes.found[i];
-    if (!is_one_of(f, row, d, &n)) continue;
-    double t = rc_dash_along(row, d->u, d->v) / scale, weight = d->w * d->w * d->w * d->w;
+    double at_u, at_v;
+    if (!tells(f, row, d, &n, &at_u, &at_v)) continue;
+    double t = rc_dash_along(row, at_u, at_v) / scale, weight = d->w * d->w * d->w * d->w;
     double terms[3] = {1, n, -n * t};
     for (int k = 0; k < unknown; k++) {
       for (int j = 0; j < unknown; j++) m[k * unknown + j] += weight * terms[k] * terms[j];
@@ -221,13 +251,13 @@ static void grow(const finder *f, rc_dash_row *row) {
   int before;
   gather(f, row);
   do {
-    before = row->seen_count;
+    before = told_by(row);
     rc_dash_row old = *row;
     fit_places(f, row);
     fit_line(f, row);
     gather(f, row);
-    if (row->seen_count < before) *row = old;
-  } while (row->seen_count > before);
+    if (told_by(row) < before) *row = old;
+  } while (told_by(row) > before);
 }
 
 static rc_dash_row row_between(const rc_dash *p, const rc_dash *q) {
@@ -251,7 +281,7 @@ static bool is_taken(const rc_dash_rows *rows, const rc_dash *d) {
 /* The row of most dashes among those that lie in none yet. */
 static recede_status find_longest(rc_context *context, const finder *f, const rc_dash_rows *rows,
                                   rc_dash_row *best) {
-  best->seen_count = LEAST_DASHES - 1;
+  best->seen_count = LEAST_DASHES - 1, best->rest_count = 0;
   for (int i = 0; i < f->dashes.count; i++) {
     RC_TRY(rc_poll(context));
     for (int k = i + 1; k < f->dashes.count; k++) {
@@ -263,27 +293,21 @@ static recede_status find_longest(rc_context *context, const finder *f, const rc
           row.period < SHORTEST_PERIOD * row.length || row.period > LONGEST_PERIOD * row.length)
         continue;
       grow(f, &row);
-      if (row.seen_count > best->seen_count && find_ends(f, &row)) *best = row;
+      if (told_by(&row) > told_by(best) && find_ends(f, &row)) *best = row;
     }
   }
   return RECEDE_OK;
 }
 
-/* What is seen of one that is cut may be the rest of one of the row's: then its middle is here. */
-static bool middle_of(const rc_dash_row *row, const rc_dash *d, double *u, double *v) {
-  double a = row->a, b = row->b, out = 0;
-  double length = sqrt(12 * fmax(a * a * d->uu + 2 * a * b * d->uv + b * b * d->vv, 0));
-  double width = sqrt(12 * fmax(b * b * d->uu - 2 * a * b * d->uv + a * a * d->vv, 0));
-  *u = d->u, *v = d->v;
-  if (d->complete) return rc_dashes_alike(row, d->length, d->a, d->b);
-  if (width > MOST_WIDER * row->width || row->width > MOST_WIDER * width ||
-      length > RC_DASHES_MOST_LONGER * row->length || length < LEAST_REST * row->length)
-    return false;
-  double to_cut = (d->cut_u - d->u) * a + (d->cut_v - d->v) * b;
-  if (fabs(to_cut) < LEAST_TO_CUT * length) return false; /* it is cut lengthwise */
-  out = fmax(row->length - length, 0) / 2;
-  *u += to_cut > 0 ? out * a : -out * a, *v += to_cut > 0 ? out * b : -out * b;
-  return true;
+/* Turns a row to where the rest of its only dash runs. */
+static void follow_rest(const finder *f, const rc_dash *d, rc_dash_row *row) {
+  rc_dash_rest rest;
+  rc_dash_row own;
+  if (!rc_dash_rest_of(row, d, &rest) ||
+      !rc_dash_alone(&f->dashes, &f->ground, f->flags, f->exponent, row, row->length, &rest, &own))
+    return;
+  row->u = own.u, row->v = own.v;
+  row->a = own.a * rest.towards, row->b = own.b * rest.towards;
 }
 
 /* Beside a row that is told, with one dash that is seen or more, or the rest of one. */
@@ -296,6 +320,7 @@ static void find_beside(const finder *f, rc_dash_rows *rows) {
       if (is_taken(rows, d) || !middle_of(&row, d, &row.u, &row.v)) continue;
       row.first = 0;
       gather(f, &row);
+      if (!row.seen_count) follow_rest(f, d, &row);
       if (find_ends(f, &row)) rows->rows[rows->count++] = row;
     }
 }
@@ -315,14 +340,15 @@ static recede_status find_rows(rc_context *context, const finder *f, rc_dash_row
   for (rows->count = 0; rows->count < RC_MOST_DASH_ROWS; rows->count++) {
     rc_dash_row *next = &rows->rows[rows->count];
     RC_TRY(find_longest(context, f, rows, next));
-    if (next->seen_count < LEAST_DASHES) break;
+    if (told_by(next) < LEAST_DASHES) break;
   }
   return RECEDE_OK;
 }
 
 static int seen_in(const rc_dash_rows *rows) {
   int sum = 0;
-  for (int i = 0; i < rows->count; i++) sum += rows->rows[i].seen_count;
+  for (int i = 0; i < rows->count; i++)
+    sum += OF_SEEN * rows->rows[i].seen_count + rows->rows[i].rest_count;
   return sum;
 }
 

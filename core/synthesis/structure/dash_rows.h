@@ -11,10 +11,12 @@
 #define RC_MOST_DASH_ROWS 8
 #define RC_MOST_IN_ROW 24
 
-/* A dash in the hole: which, and where the middle of the one that is copied lies. */
+/* A dash in the hole: which, and where the middle of the one that is copied lies. Or it is made of
+ * its own rest. */
 typedef struct rc_dash_laid {
   int number;
   double u, v;
+  double rest; /* 0, or so much of it may be copied, from its end at -length / 2 */
 } rc_dash_laid;
 
 /* Places and lengths as those of a dash. */
@@ -28,6 +30,7 @@ typedef struct rc_dash_row {
   bool ends[2];             /* there it is seen to have ended, at low and at high */
   int seen[RC_MOST_IN_ROW]; /* those wholly seen */
   int seen_count;
+  int rest_count; /* and those of which the rest is */
   rc_dash_laid laid[RC_MOST_IN_ROW];
   int laid_count;
 } rc_dash_row;
