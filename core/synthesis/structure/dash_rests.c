@@ -2,7 +2,8 @@
 
 #include "synthesis/structure/dash_row.h"
 
-/* Dashes of which the hole shows no whole one near enough: each is made of what is left of it. */
+/* A dash that the hole cuts, and of which there is no like one near enough, is made whole of what
+ * is left of it. */
 
 /* The rest of a dash that the hole or the picture's end cuts off is not wider than so many times
  * the row's dashes, and they, blurred where they are far, not than it; of the whole one's length
@@ -93,15 +94,16 @@ static void find_rests(const rc_dashes *dashes, const rc_dash_row *row, int n,
   }
 }
 
-/* A row of a dash alone, so long, from the end that is seen, at -length / 2, to where it is due. Its
- * line runs through the rest and the next dash, if there is one: the row's may pass by half the
+/* A row of a dash alone, so long, from the end that is seen, at -length / 2, to where it is due.
+ * Its line runs through the rest and the next dash, if there is one: the row's may pass by half the
  * width of what is near. */
 static rc_dash_row row_of(const rc_dash_row *row, double length, const rc_dash_rest *rest,
                           const rc_dash *next) {
   rc_dash_row own = *row;
   if (next) {
     double far = rc_distance(next->u - rest->u, next->v - rest->v);
-    double sign = rc_dash_along(row, next->u - rest->u + row->u, next->v - rest->v + row->v) < 0 ? -1 : 1;
+    double sign =
+        rc_dash_along(row, next->u - rest->u + row->u, next->v - rest->v + row->v) < 0 ? -1 : 1;
     own.a = sign * (next->u - rest->u) / far, own.b = sign * (next->v - rest->v) / far;
   }
   own.length = length, own.width = rest->width;
@@ -145,10 +147,10 @@ static double length_to_copy(const rc_ground *ground, const rc_mask *flags, int 
   return length;
 }
 
-/* Turns a row of a dash alone to where the part of it runs that may be copied: the middle across, at
- * places along that. A rest's moments lean with the hole's border. */
-static void straighten(const rc_dashes *dashes, const rc_ground *ground, int exponent, double length,
-                       rc_dash_row *own) {
+/* Turns a row of a dash alone to where the part of it runs that may be copied: the middle across,
+ * at places along that. A rest's moments lean with the hole's border. */
+static void straighten(const rc_dashes *dashes, const rc_ground *ground, int exponent,
+                       double length, rc_dash_row *own) {
   double weight = 0, mt = 0, ms = 0, tt = 0, ts = 0, end = .5 * own->length;
   for (int pass = 0; pass < 2; pass++)
     for (int k = 0; k < STEPS * STEPS; k++) {
