@@ -95,7 +95,7 @@ static bool is_among(const int *numbers, int count, int n) {
 }
 
 static void gather(const finder *f, rc_dash_row *row) {
-  int rests[RC_MOST_IN_ROW], n;
+  int rests[RC_MOST_IN_ROW] = {0}, n;
   double u, v;
   row->seen_count = row->rest_count = 0;
   for (int i = 0; i < f->dashes.count; i++) {
