@@ -114,6 +114,8 @@ static const recede_param_info table[] = {
     STAGE("engine-focus", engine_focus, "copy what is as sharp as what lies around"),
     STAGE("engine-light", engine_light,
           "copy what lies in the same light, or nearly, where no plane recedes"),
+    STAGE("engine-layers", engine_layers,
+          "copy what lies as high in the picture, or nearly, where no plane recedes"),
     STAGE("engine-periods", engine_periods, "candidates at the texture's periods"),
     STAGE("engine-lattice", engine_lattice,
           "copy what repeats both ways by whole periods, bent as it lies"),

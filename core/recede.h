@@ -181,12 +181,13 @@ typedef struct recede_params {
   int paper_iterations;        /* of one sweep, at most; 0: by method */
   int engine_near, engine_tone, engine_alike, engine_periods, engine_lattice, engine_regular,
       engine_joints, engine_lines, engine_branches, engine_rails, engine_gauge, engine_spots,
-      engine_kin, engine_focus, engine_light, engine_boundary, engine_regions, engine_tracks,
-      engine_dashes, engine_standing, engine_texture, engine_whole, engine_cuts, engine_coherence,
-      engine_beside, engine_steps, engine_usage, engine_confidence, engine_composition, engine_join,
-      engine_detail, engine_spline; /* stages of the plane engine, 1 = on */
-  int engine_starts;                /* trials of the coarsest level; 0: by quality */
-  int engine_iterations;            /* EM iterations at the coarsest level; 0: by quality */
+      engine_kin, engine_focus, engine_light, engine_layers, engine_boundary, engine_regions,
+      engine_tracks, engine_dashes, engine_standing, engine_texture, engine_whole, engine_cuts,
+      engine_coherence, engine_beside, engine_steps, engine_usage, engine_confidence,
+      engine_composition, engine_join, engine_detail,
+      engine_spline;     /* stages of the plane engine, 1 = on */
+  int engine_starts;     /* trials of the coarsest level; 0: by quality */
+  int engine_iterations; /* EM iterations at the coarsest level; 0: by quality */
 } recede_params;
 
 typedef enum recede_param_type {

@@ -21,6 +21,7 @@
 #include "synthesis/search/rest.h"
 #include "synthesis/search/traits.h"
 #include "synthesis/sources/alike.h"
+#include "synthesis/sources/layers.h"
 #include "synthesis/sources/near.h"
 #include "synthesis/sources/places.h"
 #include "synthesis/sources/spots.h"
@@ -347,6 +348,9 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                             127 / (DEVIATIONS * e.gain), params->engine_focus,
                             params->engine_kin && !problem->synthesis && !e.due,
                             params->engine_light && frontal, &e.conditions));
+  if (params->engine_layers && frontal && !problem->synthesis && !e.due)
+    RC_TRY(rc_layers_find(context, &e.images[e.level_count - 1], &e.flags[e.level_count - 1],
+                          e.level_count - 1, &tone, &e.layers));
   if (params->engine_texture)
     RC_TRY(rc_traits_find(context, e.images, e.flags, e.level_count, &e.chart, e.traits));
   /* After all that looks at what may be copied: a dash beside the hole says how much may stand out

@@ -171,9 +171,51 @@ static void what_is_in_focus_stays_so(void) {
   g_assert_cmpfloat(sharpness("orientation=frontal engine-focus=0 engine-kin=0"), <, with - .1);
 }
 
+/* Ground that gets darker downwards, and lighter again, and a dark post beside the hole. */
+static double ground_at(int x, int y) {
+  return x >= 100 && x < 130 && y >= 40 && y < 260 ? .3 : .5 + .2 * sin(y / 40.);
+}
+
+static picture layered_ground(void) {
+  picture p = picture_new(420, 300, 1, RECEDE_U8);
+  for (int y = 0; y < 300; y++)
+    for (int x = 0; x < 420; x++) {
+      double grain = smooth_noise(x, y, .15, 7) + .5 * (noise_at(x, y, 8) - .5);
+      picture_set(&p, x, y, 0, (float)(ground_at(x, y) + .6 * grain));
+    }
+  return p;
+}
+
+/* How far, in the mean of squares, squares of 30 px of a hole beside the post are from what the
+ * ground is as high as they lie. */
+static double off_layers(const char *settings, int seed) {
+  const area hole = {130, 60, 310, 240};
+  double sum = 0;
+  task t = filled(layered_ground(), hole, settings, seed);
+  for (int y = hole.y0; y < hole.y1; y += 30)
+    for (int x = hole.x0; x < hole.x1; x += 30) {
+      double mean = moments_of(&t.result, &t.mask, true, (area){x, y, x + 30, y + 30}, 0).mean;
+      sum += pow(mean - ground_at(x + 15, y + 15), 2) / 36;
+    }
+  task_clear(&t);
+  g_test_message("%s, seed %d: %.3f", settings, seed, sqrt(sum));
+  return sqrt(sum);
+}
+
+static void layers_stay_as_high_as_they_lie(void) {
+  double with = 0, without = 0;
+  for (int seed = 0; seed < 4; seed++) {
+    with += off_layers("quality=draft orientation=frontal", seed) / 4;
+    without += off_layers("quality=draft orientation=frontal engine-layers=0", seed) / 4;
+  }
+  g_assert_cmpfloat(with, <, .05);
+  g_assert_cmpfloat(without, >, .06);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   test_add_judged("/kin/things", things_stay_on_their_side);
+  test_add_judged("/kin/layers", layers_stay_as_high_as_they_lie);
   g_test_add_func("/kin/walker", nobody_is_copied_onto_a_road);
   test_add_judged("/kin/focus", what_is_in_focus_stays_so);
   return g_test_run();

@@ -93,6 +93,7 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
     RC_TRY(rc_level_new(context, &e->flags[exponent], &chart, &level));
     level.sides = rc_sides_coarser(e->sides, exponent);
     level.conditions = rc_conditions_coarser(e->conditions, exponent);
+    level.layers = e->layers;
     if (!coarsest) level.ranges = coarser.ranges;
     if (e->on_lattice) level.lattice = rc_lattice_finer(coarser.lattice, 2.f);
     if (exponent >= last_searched(e))

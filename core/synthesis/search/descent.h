@@ -30,6 +30,7 @@ typedef struct rc_descent {
   rc_rails rails;
   bool keep_rails; /* an earlier fill of the same plane did: other starts need not be tried */
   rc_conditions conditions; /* of the finest level */
+  float layers;             /* as rc_layers_find */
   rc_sides sides;           /* of the finest level */
   bool take_beside; /* what is too far away for a level's patches is taken from beside the hole */
   /* Starts that kept to them fitted well enough. */

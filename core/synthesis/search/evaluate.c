@@ -139,6 +139,11 @@ static float price_of_conditions(const rc_level *level, const rc_query *query,
          rc_conditions_price(rc_condition_at(&level->conditions, x, y), query->condition);
 }
 
+static float price_of_layers(const rc_level *level, const rc_query *query, const rc_place *place) {
+  float off = (place->y - query->y) / (float)rc_longer_side(level->box);
+  return level->layers * level->variance * off * off;
+}
+
 static float price_of_lattice(const rc_level *level, const rc_query *query, const rc_place *place) {
   if (!rc_has_lattice(&level->lattice)) return 0.f;
   return level->variance *
@@ -150,7 +155,7 @@ float rc_query_price(const rc_level *level, const rc_query *query, rc_copy copy,
   return rc_query_allows(level, query, copy, place)
              ? rc_place_price(level->variance, place, query->low, query->high) +
                    price_of_sides(level, query, place) + price_of_conditions(level, query, place) +
-                   price_of_lattice(level, query, place)
+                   price_of_layers(level, query, place) + price_of_lattice(level, query, place)
              : RC_NO_COST;
 }
 
@@ -167,6 +172,7 @@ float rc_query_cost(const rc_level *level, const rc_kernels *kernels, rc_query *
   float price = rc_place_price(level->variance, place, query->low, query->high);
   if (price < limit) price += price_of_sides(level, query, place);
   if (price < limit) price += price_of_conditions(level, query, place);
+  if (price < limit) price += price_of_layers(level, query, place);
   if (price < limit) price += price_of_lattice(level, query, place);
   if (price >= limit || !set_footprint(level, &level->chart, copy, place, &footprint))
     return RC_NO_COST;

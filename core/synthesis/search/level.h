@@ -54,6 +54,7 @@ typedef struct rc_level {
   rc_ranges ranges;
   rc_sides sides;
   rc_conditions conditions;
+  float layers;       /* as rc_layers_find */
   rc_lattice lattice; /* which copies keep to, if there is one */
   float variance;     /* of sources, byte^2, summed over the components */
   /* Sources sorted by side and w: indices of pixels, bin b of side s at order[first[s][b]] ..
