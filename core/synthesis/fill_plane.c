@@ -1,7 +1,7 @@
 /* Method plane: the only file that knows the order of the stages.
  * sources near -> tone -> pyramid -> what is regular -> sources that look alike -> lines, rails,
- * boundary, gauge, regions -> sources without spots and strangers -> tracks -> conditions -> traits
- * -> start -> (search <-> vote) per level, coarse to fine -> composition -> detail. */
+ * boundary, gauge, regions -> sources without spots and strangers -> tracks -> conditions, layers
+ * -> traits -> start -> (search <-> vote) per level, coarse to fine -> composition -> detail. */
 #include "synthesis/fill_plane.h"
 
 #include <math.h>

@@ -140,6 +140,7 @@ static float price_of_conditions(const rc_level *level, const rc_query *query,
 }
 
 static float price_of_layers(const rc_level *level, const rc_query *query, const rc_place *place) {
+  if (!(level->layers > 0.f)) return 0.f;
   float off = (place->y - query->y) / (float)rc_longer_side(level->box);
   return level->layers * level->variance * off * off;
 }

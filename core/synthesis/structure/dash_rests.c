@@ -19,6 +19,8 @@
 #define LEAST_COPIED .1
 #define MOST_COARSE 2.5
 #define STEPS 64
+/* A rest may turn from its row by so much: 8 degrees. */
+#define MOST_TURN .14
 
 bool rc_dash_rest_of(const rc_dash_row *row, const rc_dash *d, rc_dash_rest *rest) {
   double a = row->a, b = row->b;
@@ -55,14 +57,14 @@ static bool is_seen_in(const rc_dash_row *row, const rc_dash *d) {
          rc_dash_lies_on(row, d->u, d->v, d->w);
 }
 
-/* The row's dash that is seen next to a place along it, or NULL. */
+/* The row's dash that is seen next to a place along it, but not beside it, or NULL. */
 static const rc_dash *find_next(const rc_dashes *dashes, const rc_dash_row *row, double t) {
   const rc_dash *next = NULL;
   double least = INFINITY;
   for (int i = 0; i < dashes->count; i++) {
     const rc_dash *d = &dashes->found[i];
     double off = fabs(rc_dash_along(row, d->u, d->v) - t);
-    if (is_seen_in(row, d) && off < least) least = off, next = d;
+    if (is_seen_in(row, d) && off > row->length && off < least) least = off, next = d;
   }
   return next;
 }
@@ -164,7 +166,7 @@ static void straighten(const rc_dashes *dashes, const rc_ground *ground, int exp
       else
         weight += off, mt += off * (t - mt) / weight, ms += off * (side - ms) / weight;
     }
-  if (!(tt > 0)) return;
+  if (!(tt > 0) || fabs(ts) > MOST_TURN * tt) return;
   double slope = ts / tt, long_by = sqrt(1 + slope * slope), a = own->a, b = own->b;
   own->u += mt * a - ms * b, own->v += mt * b + ms * a;
   own->a = (a - slope * b) / long_by, own->b = (b + slope * a) / long_by;
@@ -177,8 +179,11 @@ bool rc_dash_alone(const rc_dashes *dashes, const rc_ground *ground, const rc_ma
   const rc_dash *next = find_next(dashes, row, rc_dash_along(row, rest->u, rest->v));
   *own = row_of(row, length, rest, next);
   double copied = length_to_copy(ground, flags, exponent, own, rest->length);
+  if (!next && copied > 0) {
+    straighten(dashes, ground, exponent, copied, own);
+    copied = length_to_copy(ground, flags, exponent, own, rest->length);
+  }
   if (copied < LEAST_COPIED * length) return false;
-  if (!next) straighten(dashes, ground, exponent, copied, own);
   own->laid[0] = (rc_dash_laid){.number = 0, .rest = copied};
   own->laid_count = 1;
   return true;

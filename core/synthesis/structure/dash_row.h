@@ -78,7 +78,8 @@ bool rc_dash_of_rest(const rc_dashes *dashes, const rc_dash_rows *rows, const rc
 rc_box rc_dash_box(const rc_ground *ground, const rc_dash_row *row, int n, int exponent,
                    double times_along, double times_across, double margin_px, rc_box within);
 /* Chooses what is laid into the hole, of rows that are found: dashes of a size that will do and, of
- * one that is seen in part, such that fit that. */
+ * one that is seen in part, such that fit that. Where none does, a row of that one alone is added,
+ * made of its rest. */
 recede_status rc_dash_rows_choose(rc_context *context, const rc_dashes *dashes,
                                   const rc_mask *flags, int exponent, rc_dash_rows *rows);
 

@@ -1,11 +1,12 @@
 #include "synthesis/structure/dash_rows.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "base/cholesky.h"
 #include "base/memory.h"
 #include "base/spread.h"
-#include "synthesis/structure/dash_row.h"
+#include "synthesis/structure/dash_sight.h"
 
 /* Dashes lie where they are due within this part of the period, less strictly while the ground is
  * not known; far away, so many px of the level and at the most this part. */
@@ -15,27 +16,14 @@
 #define MOST_OFF_PERIOD .3
 #define SHORTEST_PERIOD 1.25 /* of a dash */
 #define LONGEST_PERIOD 12.
-/* A row is told by so many dashes, of which one may be seen in part, and for each that is missing
- * where it could be seen there must be so many more. One beside such a row, with its dashes and
- * period, by a single one. */
+/* A row is told by so many dashes, one of which may be the rest of one, if hardly any are seen
+ * whole; and for each that is missing where it could be seen there must be so many more. One beside
+ * such a row, with its dashes and period, by a single one. Of grounds the one shows more rows, or
+ * longer ones, on which more dashes lie; there a rest counts half. */
 #define LEAST_DASHES 3
-/* What is seen in part tells half as much, and nothing beside so many that are seen. */
 #define OF_SEEN 2
 #define ENOUGH_SEEN 4
-/* Between them, from so much of a dash's length from its middle, hardly anything stands out by more
- * than this part of what they do; and across their ends nothing does along most of their length, as
- * a wall's joints would. Places that are looked at. */
-#define PART_OF_CONTRAST .33
-#define GAP_FROM .75
-#define MOST_PART_BETWEEN .25
-#define ACROSS_FROM .4
-#define ACROSS_TO .8
-#define STEPS_ACROSS 12
-#define LEAST_ACROSS .6
-#define SAMPLES 32
 #define DASHES_PER_MISSING 4
-/* Shorter ones of the level could be missed. */
-#define LEAST_SEEN_PX 4.
 /* So many of a row tell where their line vanishes; corrected is to so much of w at the hole's ends,
  * in so many rounds. */
 #define LEAST_DRIFTING 4
@@ -45,16 +33,10 @@
 
 typedef struct finder {
   const rc_mask *flags;
-  rc_ground ground;
-  int exponent;
+  rc_dash_sight sight;
   bool drifts;  /* the ground is not known yet */
   double reach; /* half of the hole's longer side, px of the finest level */
-  rc_dashes dashes;
 } finder;
-
-typedef struct looked {
-  double seen, stands_out; /* places */
-} looked;
 
 static bool lies_on(const rc_dash_row *row, const rc_dash *d) {
   return rc_dash_lies_on(row, d->u, d->v, d->w);
@@ -76,113 +58,66 @@ static bool middle_of(const rc_dash_row *row, const rc_dash *d, double *u, doubl
 static bool is_one_of(const finder *f, const rc_dash_row *row, const rc_dash *d, int *n, double *u,
                       double *v) {
   double x, y, due_x, due_y, w;
-  if (!middle_of(row, d, u, v) || !lies_on(row, d)) return false;
+  if (!lies_on(row, d) || !middle_of(row, d, u, v)) return false;
   double t = rc_dash_along(row, *u, *v);
   *n = rc_dash_number(row, t);
   double due = rc_dash_place(row, *n), period = fabs(rc_dash_place(row, *n + 1) - due);
   if (!isfinite(due)) return false;
   if (fabs(t - due) <= (f->drifts ? OFF_WHILE_DRIFTING : OFF_PERIOD) * period) return true;
   return fabs(t - due) <= MOST_OFF_PERIOD * period &&
-         rc_ground_px(&f->ground, f->exponent, *u, *v, &x, &y, &w) &&
-         rc_dash_px(&f->ground, f->exponent, row, due, 0, &due_x, &due_y, &w) &&
+         rc_ground_px(&f->sight.ground, f->sight.exponent, *u, *v, &x, &y, &w) &&
+         rc_dash_px(&f->sight.ground, f->sight.exponent, row, due, 0, &due_x, &due_y, &w) &&
          rc_distance(x - due_x, y - due_y) <= OFF_PLACE_PX;
 }
 
-static bool is_among(const int *numbers, int count, int n) {
-  for (int k = 0; k < count; k++)
-    if (numbers[k] == n) return true;
+static bool is_seen(const rc_dash_row *row, int n) {
+  for (int k = 0; k < row->seen_count; k++)
+    if (row->seen[k] == n) return true;
   return false;
 }
 
-static void gather(const finder *f, rc_dash_row *row) {
-  int rests[RC_MOST_IN_ROW] = {0}, n;
-  double u, v;
-  row->seen_count = row->rest_count = 0;
-  for (int i = 0; i < f->dashes.count; i++) {
-    const rc_dash *d = &f->dashes.found[i];
-    int *numbers = d->complete ? row->seen : rests;
-    int *count = d->complete ? &row->seen_count : &row->rest_count;
-    if (*count < RC_MOST_IN_ROW && is_one_of(f, row, d, &n, &u, &v) &&
-        !is_among(numbers, *count, n))
-      numbers[(*count)++] = n;
+/* Whether none is missing from the n-th, of which there is a rest, to the next that is seen. */
+static bool goes_on_to(const finder *f, const rc_dash_row *row, int n) {
+  int next = row->seen[0], step = 1;
+  for (int k = 1; k < row->seen_count; k++)
+    if (abs(row->seen[k] - n) < abs(next - n)) next = row->seen[k];
+  if (next < n) step = -1;
+  for (int k = n + step; k != next; k += step)
+    if (rc_dash_is_missing(&f->sight, row, k)) return false;
+  return true;
+}
+
+/* The first rest that belongs to a row of which too few are seen. */
+static void gather_rest(const finder *f, rc_dash_row *row) {
+  for (int i = 0, n; i < f->sight.dashes.count && !row->has_rest; i++) {
+    double u, v;
+    if (f->sight.dashes.found[i].complete ||
+        !is_one_of(f, row, &f->sight.dashes.found[i], &n, &u, &v) || is_seen(row, n) ||
+        !goes_on_to(f, row, n))
+      continue;
+    row->has_rest = true, row->rest = n;
   }
-  if (row->seen_count >= ENOUGH_SEEN) row->rest_count = 0;
+}
+
+static void gather(const finder *f, rc_dash_row *row) {
+  row->seen_count = 0, row->has_rest = false;
+  for (int i = 0, n; i < f->sight.dashes.count && row->seen_count < RC_MOST_IN_ROW; i++) {
+    double u, v;
+    if (f->sight.dashes.found[i].complete &&
+        is_one_of(f, row, &f->sight.dashes.found[i], &n, &u, &v) && !is_seen(row, n))
+      row->seen[row->seen_count++] = n;
+  }
+  if (row->seen_count > 0 && row->seen_count < ENOUGH_SEEN) gather_rest(f, row);
 }
 
 /* Whether it tells where the row's n-th is. */
 static bool tells(const finder *f, const rc_dash_row *row, const rc_dash *d, int *n, double *u,
                   double *v) {
-  return (d->complete || row->rest_count > 0) && is_one_of(f, row, d, n, u, v);
+  return (d->complete || row->has_rest) && is_one_of(f, row, d, n, u, v) &&
+         (d->complete || *n == row->rest);
 }
 
-static int told_by(const rc_dash_row *row) { return row->seen_count + row->rest_count; }
-
-/* Whether a row's n-th dash would be seen if it were there. */
-static bool would_be_seen(const finder *f, const rc_dash_row *row, int n) {
-  double x[3], y[3], w, off;
-  for (int k = 0; k < 3; k++) {
-    double t = rc_dash_place(row, n) + .5 * (k - 1) * row->length;
-    if (!rc_dash_px(&f->ground, f->exponent, row, t, 0, &x[k], &y[k], &w) ||
-        !rc_dashes_off(&f->dashes, x[k], y[k], &off))
-      return false;
-  }
-  return rc_distance(x[2] - x[0], y[2] - y[0]) >= LEAST_SEEN_PX;
-}
-
-static bool is_there(const finder *f, const rc_dash_row *row, int n) {
-  for (int i = 0; i < f->dashes.count; i++) {
-    const rc_dash *d = &f->dashes.found[i];
-    if (lies_on(row, d) && fabs(rc_dash_along(row, d->u, d->v) - rc_dash_place(row, n)) <
-                               .5 * (row->length + d->length))
-      return true;
-  }
-  return false;
-}
-
-static bool is_missing(const finder *f, const rc_dash_row *row, int n) {
-  return would_be_seen(f, row, n) && !is_there(f, row, n);
-}
-
-/* Counts what is seen, and stands out, at a place so far along the row and off it. */
-static void look(const finder *f, const rc_dash_row *row, double t, double side, looked *l) {
-  double x, y, w, off;
-  if (!rc_dash_px(&f->ground, f->exponent, row, t, side, &x, &y, &w) ||
-      !rc_dashes_off(&f->dashes, x, y, &off))
-    return;
-  l->seen++, l->stands_out += fabs(off) > PART_OF_CONTRAST * row->contrast;
-}
-
-/* At what lies between a dash and the next. */
-static void look_between(const finder *f, const rc_dash_row *row, int n, looked *l) {
-  double from = rc_dash_place(row, n) + GAP_FROM * row->length;
-  double to = rc_dash_place(row, n + 1) - GAP_FROM * row->length;
-  for (int k = 0; k < SAMPLES; k++) look(f, row, from + (to - from) * (k + .5) / SAMPLES, 0, l);
-}
-
-/* Whether something lies across an end of the n-th, as the joints of a wall do. */
-static bool is_crossed(const finder *f, const rc_dash_row *row, int n, double end) {
-  for (int i = 0; i < STEPS_ACROSS; i++) {
-    double from_middle = ACROSS_FROM + (ACROSS_TO - ACROSS_FROM) * i / STEPS_ACROSS;
-    looked l = {0, 0};
-    for (int k = 0; k < SAMPLES; k++) {
-      double side = row->length * ((k + .5) / SAMPLES - .5);
-      if (fabs(side) > row->width)
-        look(f, row, rc_dash_place(row, n) + end * from_middle * row->length, side, &l);
-    }
-    if (l.seen >= SAMPLES / 4 && l.stands_out > LEAST_ACROSS * l.seen) return true;
-  }
-  return false;
-}
-
-/* Whether paint is all that stands out in it. */
-static bool is_plain(const finder *f, const rc_dash_row *row, int first, int last) {
-  looked l = {0, 0};
-  int crossed = 0;
-  for (int n = first - 1; n <= last; n++) look_between(f, row, n, &l);
-  for (int i = 0; i < row->seen_count; i++)
-    crossed += is_crossed(f, row, row->seen[i], -1) || is_crossed(f, row, row->seen[i], 1);
-  return l.stands_out <= MOST_PART_BETWEEN * l.seen && 2 * crossed <= row->seen_count;
-}
+static int told_by(const rc_dash_row *row) { return row->seen_count + row->has_rest; }
 
 /* How far the row goes. False: too many of its dashes are missing, or something lies between. */
 static bool find_ends(const finder *f, rc_dash_row *row) {
@@ -191,15 +126,17 @@ static bool find_ends(const finder *f, rc_dash_row *row) {
     first = row->seen[i] < first ? row->seen[i] : first;
     last = row->seen[i] > last ? row->seen[i] : last;
   }
-  for (int n = first + 1; n < last; n++) missing += is_missing(f, row, n);
+  for (int n = first + 1; n < last; n++) missing += rc_dash_is_missing(&f->sight, row, n);
   if (DASHES_PER_MISSING * missing > row->seen_count) return false;
-  if (!is_plain(f, row, first, last)) return false;
+  if (!rc_dash_row_is_plain(&f->sight, row, first, last)) return false;
   row->low = first - FARTHEST, row->high = last + FARTHEST;
   row->ends[0] = row->ends[1] = false;
   /* Where it is seen to have ended, between here and there none is sure. */
   for (int n = 1; n <= FARTHEST; n++) {
-    if (!row->ends[0] && is_missing(f, row, first - n)) row->ends[0] = true, row->low = first;
-    if (!row->ends[1] && is_missing(f, row, last + n)) row->ends[1] = true, row->high = last;
+    if (!row->ends[0] && rc_dash_is_missing(&f->sight, row, first - n))
+      row->ends[0] = true, row->low = first;
+    if (!row->ends[1] && rc_dash_is_missing(&f->sight, row, last + n))
+      row->ends[1] = true, row->high = last;
   }
   return true;
 }
@@ -208,8 +145,8 @@ static bool find_ends(const finder *f, rc_dash_row *row) {
 static void fit_line(const finder *f, rc_dash_row *row) {
   double weight = 0, mu = 0, mv = 0, uu = 0, uv = 0, vv = 0;
   for (int pass = 0, n; pass < 2; pass++)
-    for (int i = 0; i < f->dashes.count; i++) {
-      const rc_dash *d = &f->dashes.found[i];
+    for (int i = 0; i < f->sight.dashes.count; i++) {
+      const rc_dash *d = &f->sight.dashes.found[i];
       double u, v;
       if (!tells(f, row, d, &n, &u, &v)) continue;
       double q = d->w * d->w, du = u - mu, dv = v - mv;
@@ -230,8 +167,8 @@ static void fit_line(const finder *f, rc_dash_row *row) {
 static void fit_places(const finder *f, rc_dash_row *row) {
   int unknown = f->drifts && told_by(row) >= LEAST_DRIFTING ? 3 : 2;
   double m[9] = {0}, v[3] = {0}, scale = row->period;
-  for (int i = 0, n; i < f->dashes.count; i++) {
-    const rc_dash *d = &f->dashes.found[i];
+  for (int i = 0, n; i < f->sight.dashes.count; i++) {
+    const rc_dash *d = &f->sight.dashes.found[i];
     double at_u, at_v;
     if (!tells(f, row, d, &n, &at_u, &at_v)) continue;
     double t = rc_dash_along(row, at_u, at_v) / scale, weight = d->w * d->w * d->w * d->w;
@@ -281,11 +218,11 @@ static bool is_taken(const rc_dash_rows *rows, const rc_dash *d) {
 /* The row of most dashes among those that lie in none yet. */
 static recede_status find_longest(rc_context *context, const finder *f, const rc_dash_rows *rows,
                                   rc_dash_row *best) {
-  best->seen_count = LEAST_DASHES - 1, best->rest_count = 0;
-  for (int i = 0; i < f->dashes.count; i++) {
+  best->seen_count = LEAST_DASHES - 1, best->has_rest = false;
+  for (int i = 0; i < f->sight.dashes.count; i++) {
     RC_TRY(rc_poll(context));
-    for (int k = i + 1; k < f->dashes.count; k++) {
-      const rc_dash *p = &f->dashes.found[i], *q = &f->dashes.found[k];
+    for (int k = i + 1; k < f->sight.dashes.count; k++) {
+      const rc_dash *p = &f->sight.dashes.found[i], *q = &f->sight.dashes.found[k];
       if (!p->complete || !q->complete || is_taken(rows, p) || is_taken(rows, q)) continue;
       rc_dash_row row = row_between(p, q);
       if (!rc_dashes_alike(&row, p->length, p->a, p->b) ||
@@ -304,7 +241,8 @@ static void follow_rest(const finder *f, const rc_dash *d, rc_dash_row *row) {
   rc_dash_rest rest;
   rc_dash_row own;
   if (!rc_dash_rest_of(row, d, &rest) ||
-      !rc_dash_alone(&f->dashes, &f->ground, f->flags, f->exponent, row, row->length, &rest, &own))
+      !rc_dash_alone(&f->sight.dashes, &f->sight.ground, f->flags, f->sight.exponent, row,
+                     row->length, &rest, &own))
     return;
   row->u = own.u, row->v = own.v;
   row->a = own.a * rest.towards, row->b = own.b * rest.towards;
@@ -314,8 +252,8 @@ static void follow_rest(const finder *f, const rc_dash *d, rc_dash_row *row) {
 static void find_beside(const finder *f, rc_dash_rows *rows) {
   int told = rows->count;
   for (int i = 0; i < told; i++)
-    for (int k = 0; k < f->dashes.count && rows->count < RC_MOST_DASH_ROWS; k++) {
-      const rc_dash *d = &f->dashes.found[k];
+    for (int k = 0; k < f->sight.dashes.count && rows->count < RC_MOST_DASH_ROWS; k++) {
+      const rc_dash *d = &f->sight.dashes.found[k];
       rc_dash_row row = rows->rows[i];
       if (is_taken(rows, d) || !middle_of(&row, d, &row.u, &row.v)) continue;
       row.first = 0;
@@ -336,7 +274,7 @@ static bool correct(const finder *f, const rc_dash_row *row, rc_ground *ground) 
 }
 
 static recede_status find_rows(rc_context *context, const finder *f, rc_dash_rows *rows) {
-  rows->ground = f->ground;
+  rows->ground = f->sight.ground;
   for (rows->count = 0; rows->count < RC_MOST_DASH_ROWS; rows->count++) {
     rc_dash_row *next = &rows->rows[rows->count];
     RC_TRY(find_longest(context, f, rows, next));
@@ -348,7 +286,7 @@ static recede_status find_rows(rc_context *context, const finder *f, rc_dash_row
 static int seen_in(const rc_dash_rows *rows) {
   int sum = 0;
   for (int i = 0; i < rows->count; i++)
-    sum += OF_SEEN * rows->rows[i].seen_count + rows->rows[i].rest_count;
+    sum += OF_SEEN * rows->rows[i].seen_count + rows->rows[i].has_rest;
   return sum;
 }
 
@@ -357,16 +295,16 @@ static int seen_in(const rc_dash_rows *rows) {
 static recede_status try_horizons(rc_context *context, finder *f, rc_dash_rows *rows, bool *any) {
   static const double farther[] = {0, -.05, .05, -.1, .1, -.15, .15};
   int most = 0;
-  const rc_ground said = f->ground;
-  const rc_dashes seen = f->dashes;
+  const rc_ground said = f->sight.ground;
+  const rc_dashes seen = f->sight.dashes;
   rc_ground best = said;
   for (size_t i = 0; i < sizeof farther / sizeof *farther; i++) {
-    f->ground = rc_ground_tilted(&said, 1 + farther[i]);
-    rc_dashes_move(&seen, &said, &f->ground, &f->dashes);
+    f->sight.ground = rc_ground_tilted(&said, 1 + farther[i]);
+    rc_dashes_move(&seen, &said, &f->sight.ground, &f->sight.dashes);
     RC_TRY(find_rows(context, f, rows));
-    if (seen_in(rows) > most) most = seen_in(rows), best = f->ground;
+    if (seen_in(rows) > most) most = seen_in(rows), best = f->sight.ground;
   }
-  f->ground = best;
+  f->sight.ground = best;
   *any = most > 0;
   if (!*any) rows->count = 0;
   return RECEDE_OK;
@@ -374,22 +312,22 @@ static recede_status try_horizons(rc_context *context, finder *f, rc_dash_rows *
 
 recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, const rc_mask *flags,
                                 const rc_ground *ground, int exponent, rc_dash_rows *rows) {
-  finder f = {.flags = flags, .exponent = exponent, .ground = *ground, .drifts = true};
+  finder f = {.flags = flags, .sight = {.ground = *ground, .exponent = exponent}, .drifts = true};
   f.reach = (double)(rc_longer_side(rc_box_of(flags, RC_TARGET)) << exponent) / 2;
   rc_block *mark = rc_mark(context);
-  RC_TRY(rc_dashes_find(context, image, flags, ground, exponent, &f.dashes));
+  RC_TRY(rc_dashes_find(context, image, flags, ground, exponent, &f.sight.dashes));
   bool any = false;
   RC_TRY(try_horizons(context, &f, rows, &any));
   for (int i = 0; i <= CORRECTIONS && any; i++) {
     f.drifts = i < CORRECTIONS;
     rc_release(context, mark);
-    RC_TRY(rc_dashes_find(context, image, flags, &f.ground, exponent, &f.dashes));
+    RC_TRY(rc_dashes_find(context, image, flags, &f.sight.ground, exponent, &f.sight.dashes));
     RC_TRY(find_rows(context, &f, rows));
     any = rows->count > 0;
-    if (f.drifts && any && !correct(&f, rows->rows, &f.ground)) i = CORRECTIONS - 1;
+    if (f.drifts && any && !correct(&f, rows->rows, &f.sight.ground)) i = CORRECTIONS - 1;
   }
   find_beside(&f, rows);
-  RC_TRY(rc_dash_rows_choose(context, &f.dashes, flags, exponent, rows));
+  RC_TRY(rc_dash_rows_choose(context, &f.sight.dashes, flags, exponent, rows));
   rc_release(context, mark);
   return rc_poll(context);
 }

@@ -1,7 +1,7 @@
 /* Rows of dashes that come again along a straight line of the plane: a road's lanes. A patch sees
  * one dash at the most, and seams may pass between any two. So rows are found around the hole, what
  * lies in them is copied nowhere else, and in the hole each dash of a row is a copy of one that is
- * seen. */
+ * seen, or is made whole of its own rest. */
 #ifndef RECEDE_SYNTHESIS_STRUCTURE_DASH_ROWS_H
 #define RECEDE_SYNTHESIS_STRUCTURE_DASH_ROWS_H
 
@@ -12,7 +12,7 @@
 #define RC_MOST_IN_ROW 24
 
 /* A dash in the hole: which, and where the middle of the one that is copied lies. Or it is made of
- * its own rest. */
+ * its own rest, and that says nothing. */
 typedef struct rc_dash_laid {
   int number;
   double u, v;
@@ -30,7 +30,8 @@ typedef struct rc_dash_row {
   bool ends[2];             /* there it is seen to have ended, at low and at high */
   int seen[RC_MOST_IN_ROW]; /* those wholly seen */
   int seen_count;
-  int rest_count; /* and those of which the rest is */
+  bool has_rest; /* of one more, which tells where it is */
+  int rest;      /* which */
   rc_dash_laid laid[RC_MOST_IN_ROW];
   int laid_count;
 } rc_dash_row;
