@@ -2,9 +2,9 @@
 
 #include <math.h>
 
-/* Between a row's dashes, from so much of a dash's length from its middle, hardly anything stands out by more
- * than this part of what they do; and across their ends nothing does along most of their length, as
- * a wall's joints would. Places that are looked at. */
+/* Between a row's dashes, from so much of a dash's length from its middle, hardly anything stands
+ * out by more than this part of what they do; and across their ends nothing does along most of
+ * their length, as a wall's joints would. Places that are looked at. */
 #define PART_OF_CONTRAST .33
 #define GAP_FROM .75
 #define MOST_PART_BETWEEN .25
@@ -35,8 +35,9 @@ static bool would_be_seen(const rc_dash_sight *s, const rc_dash_row *row, int n)
 static bool is_there(const rc_dash_sight *s, const rc_dash_row *row, int n) {
   for (int i = 0; i < s->dashes.count; i++) {
     const rc_dash *d = &s->dashes.found[i];
-    if (rc_dash_lies_on(row, d->u, d->v, d->w) && fabs(rc_dash_along(row, d->u, d->v) - rc_dash_place(row, n)) <
-                               .5 * (row->length + d->length))
+    if (rc_dash_lies_on(row, d->u, d->v, d->w) &&
+        fabs(rc_dash_along(row, d->u, d->v) - rc_dash_place(row, n)) <
+            .5 * (row->length + d->length))
       return true;
   }
   return false;
