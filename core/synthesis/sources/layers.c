@@ -64,9 +64,7 @@ static recede_status gather(rc_context *context, const rc_image *image, const rc
   return RECEDE_OK;
 }
 
-/* The mean square that cells differ by which are so far from each other. False: there are hardly
- * any.
- */
+/* The mean square that cells so far from each other differ by. False: there are hardly any. */
 static bool differ(const cells *all, int right, int down, double *by) {
   double square = 0, pairs = 0;
   for (int row = 0; row + down < all->rows; row++)

@@ -4,9 +4,8 @@
 #include "synthesis/structure/dash_row.h"
 #include "synthesis/structure/dash_rows.h"
 
-/* Copies may be so much too coarse, and nearer ones so much too fine; an octave of the former is so
- * much worse. */
-#define MOST_COARSE 2.5
+/* Copies of nearer ones may be so much too fine; an octave of what is too coarse is so much worse.
+ */
 #define MOST_FINE 6.
 #define PRICE_COARSE 3.f
 /* Its own row's, which lean as it does, are preferred by so many octaves. */
@@ -147,8 +146,8 @@ static int collect(const rc_dash_rows *rows, const rc_dash_row *row, int n,
     for (int k = 0; k < from->seen_count; k++) {
       t = rc_dash_place(from, from->seen[k]);
       candidate c = {.u = from->u + t * from->a, .v = from->v + t * from->b};
-      if (!rc_ground_px(&rows->ground, 0, c.u, c.v, &x, &y, &there) || there * MOST_COARSE < w ||
-          there > MOST_FINE * w)
+      if (!rc_ground_px(&rows->ground, 0, c.u, c.v, &x, &y, &there) ||
+          there * RC_DASHES_MOST_COARSE < w || there > MOST_FINE * w)
         continue;
       float finer = rc_log2((float)(there / w));
       c.price = (finer < 0 ? -PRICE_COARSE : 1.f) * finer;

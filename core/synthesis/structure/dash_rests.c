@@ -14,10 +14,8 @@
 #define LEAST_TO_CUT .25
 /* It is due within this part of the period. */
 #define OFF_PERIOD .16
-/* At least this part of the whole is copied, from an end that is not so many times farther than the
- * one that is due. Places that are looked at. */
+/* At least this part of the whole is copied. Places that are looked at. */
 #define LEAST_COPIED .1
-#define MOST_COARSE 2.5
 #define STEPS 64
 /* A rest may turn from its row by so much: 8 degrees. */
 #define MOST_TURN .14
@@ -103,10 +101,9 @@ static rc_dash_row row_of(const rc_dash_row *row, double length, const rc_dash_r
                           const rc_dash *next) {
   rc_dash_row own = *row;
   if (next) {
-    double far = rc_distance(next->u - rest->u, next->v - rest->v);
-    double sign =
-        rc_dash_along(row, next->u - rest->u + row->u, next->v - rest->v + row->v) < 0 ? -1 : 1;
-    own.a = sign * (next->u - rest->u) / far, own.b = sign * (next->v - rest->v) / far;
+    double du = next->u - rest->u, dv = next->v - rest->v, far = rc_distance(du, dv);
+    double sign = du * row->a + dv * row->b < 0 ? -1 : 1;
+    own.a = sign * du / far, own.b = sign * dv / far;
   }
   own.length = length, own.width = rest->width;
   own.a *= rest->towards, own.b *= rest->towards;
@@ -139,7 +136,8 @@ static double length_to_copy(const rc_ground *ground, const rc_mask *flags, int 
   double end = .5 * own->length, from = -.5 * RC_DASH_TIMES_LAID * own->length, x, y, here, due;
   double to = length - end, step = (to - from) / STEPS;
   if (!rc_dash_px(ground, exponent, own, -end, 0, &x, &y, &here) ||
-      !rc_dash_px(ground, exponent, own, end, 0, &x, &y, &due) || here * MOST_COARSE < due)
+      !rc_dash_px(ground, exponent, own, end, 0, &x, &y, &due) ||
+      here * RC_DASHES_MOST_COARSE < due)
     return 0;
   for (double t = from; t < to; t += step)
     for (int side = -1; side <= 1; side++)

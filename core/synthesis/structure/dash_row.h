@@ -15,6 +15,8 @@
 /* They lie on its line within this part of their length, and so many px of the finest level. */
 #define RC_DASHES_OFF_LINE .1
 #define RC_DASHES_OFF_LINE_PX 1.5
+/* A copy may be so much too coarse. */
+#define RC_DASHES_MOST_COARSE 2.5
 /* A dash is laid so many times as wide and long as it is: the join needs it. */
 #define RC_DASH_TIMES_LAID 1.3
 

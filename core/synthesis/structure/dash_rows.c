@@ -90,21 +90,20 @@ static bool goes_on_to(const finder *f, const rc_dash_row *row, int n) {
 /* The first rest that belongs to a row of which too few are seen. */
 static void gather_rest(const finder *f, rc_dash_row *row) {
   for (int i = 0, n; i < f->sight.dashes.count && !row->has_rest; i++) {
+    const rc_dash *d = &f->sight.dashes.found[i];
     double u, v;
-    if (f->sight.dashes.found[i].complete ||
-        !is_one_of(f, row, &f->sight.dashes.found[i], &n, &u, &v) || is_seen(row, n) ||
-        !goes_on_to(f, row, n))
-      continue;
-    row->has_rest = true, row->rest = n;
+    row->has_rest = !d->complete && is_one_of(f, row, d, &n, &u, &v) && !is_seen(row, n) &&
+                    goes_on_to(f, row, n);
+    if (row->has_rest) row->rest = n;
   }
 }
 
 static void gather(const finder *f, rc_dash_row *row) {
   row->seen_count = 0, row->has_rest = false;
   for (int i = 0, n; i < f->sight.dashes.count && row->seen_count < RC_MOST_IN_ROW; i++) {
+    const rc_dash *d = &f->sight.dashes.found[i];
     double u, v;
-    if (f->sight.dashes.found[i].complete &&
-        is_one_of(f, row, &f->sight.dashes.found[i], &n, &u, &v) && !is_seen(row, n))
+    if (d->complete && is_one_of(f, row, d, &n, &u, &v) && !is_seen(row, n))
       row->seen[row->seen_count++] = n;
   }
   if (row->seen_count > 0 && row->seen_count < ENOUGH_SEEN) gather_rest(f, row);
@@ -113,8 +112,8 @@ static void gather(const finder *f, rc_dash_row *row) {
 /* Whether it tells where the row's n-th is. */
 static bool tells(const finder *f, const rc_dash_row *row, const rc_dash *d, int *n, double *u,
                   double *v) {
-  return (d->complete || row->has_rest) && is_one_of(f, row, d, n, u, v) &&
-         (d->complete || *n == row->rest);
+  if (d->complete) return is_one_of(f, row, d, n, u, v);
+  return row->has_rest && is_one_of(f, row, d, n, u, v) && *n == row->rest;
 }
 
 static int told_by(const rc_dash_row *row) { return row->seen_count + row->has_rest; }
