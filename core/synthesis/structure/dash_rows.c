@@ -1,7 +1,6 @@
 #include "synthesis/structure/dash_rows.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/cholesky.h"
 #include "base/memory.h"
@@ -16,13 +15,9 @@
 #define MOST_OFF_PERIOD .3
 #define SHORTEST_PERIOD 1.25 /* of a dash */
 #define LONGEST_PERIOD 12.
-/* A row is told by so many dashes, one of which may be the rest of one, if hardly any are seen
- * whole; and for each that is missing where it could be seen there must be so many more. One beside
- * such a row, with its dashes and period, by a single one. Of grounds the one shows more rows, or
- * longer ones, on which more dashes lie; there a rest counts half. */
+/* A row is told by so many dashes, and for each that is missing where it could be seen there must
+ * be so many more. One beside such a row, with its dashes and period, by a single one. */
 #define LEAST_DASHES 3
-#define OF_SEEN 2
-#define ENOUGH_SEEN 4
 #define DASHES_PER_MISSING 4
 /* So many of a row tell where their line vanishes; corrected is to so much of w at the hole's ends,
  * in so many rounds. */
@@ -42,81 +37,30 @@ static bool lies_on(const rc_dash_row *row, const rc_dash *d) {
   return rc_dash_lies_on(row, d->u, d->v, d->w);
 }
 
-/* Where its middle lies, or that of the one of which it is the rest. False: it is unlike the row's.
- */
-static bool middle_of(const rc_dash_row *row, const rc_dash *d, double *u, double *v) {
-  rc_dash_rest rest;
-  *u = d->u, *v = d->v;
-  if (d->complete) return rc_dashes_alike(row, d->length, d->a, d->b);
-  if (!rc_dash_rest_of(row, d, &rest)) return false;
-  rc_dash_rest_middle(row, &rest, u, v);
-  return true;
-}
-
-/* Whether it is seen, or its rest is, where the row's n-th is due; its middle lies there. A rest
- * tells that only roughly: its own length is the row's at best. */
-static bool is_one_of(const finder *f, const rc_dash_row *row, const rc_dash *d, int *n, double *u,
-                      double *v) {
-  double x, y, due_x, due_y, w;
-  if (!lies_on(row, d) || !middle_of(row, d, u, v)) return false;
-  double t = rc_dash_along(row, *u, *v);
+/* Whether it is wholly seen where the row's n-th is due. */
+static bool is_one_of(const finder *f, const rc_dash_row *row, const rc_dash *d, int *n) {
+  double t = rc_dash_along(row, d->u, d->v), x, y, due_x, due_y, w;
+  if (!d->complete || !rc_dashes_alike(row, d->length, d->a, d->b) || !lies_on(row, d))
+    return false;
   *n = rc_dash_number(row, t);
   double due = rc_dash_place(row, *n), period = fabs(rc_dash_place(row, *n + 1) - due);
   if (!isfinite(due)) return false;
   if (fabs(t - due) <= (f->drifts ? OFF_WHILE_DRIFTING : OFF_PERIOD) * period) return true;
   return fabs(t - due) <= MOST_OFF_PERIOD * period &&
-         rc_ground_px(&f->sight.ground, f->sight.exponent, *u, *v, &x, &y, &w) &&
+         rc_ground_px(&f->sight.ground, f->sight.exponent, d->u, d->v, &x, &y, &w) &&
          rc_dash_px(&f->sight.ground, f->sight.exponent, row, due, 0, &due_x, &due_y, &w) &&
          rc_distance(x - due_x, y - due_y) <= OFF_PLACE_PX;
 }
 
-static bool is_seen(const rc_dash_row *row, int n) {
-  for (int k = 0; k < row->seen_count; k++)
-    if (row->seen[k] == n) return true;
-  return false;
-}
-
-/* Whether none is missing from the n-th, of which there is a rest, to the next that is seen. */
-static bool goes_on_to(const finder *f, const rc_dash_row *row, int n) {
-  int next = row->seen[0], step = 1;
-  for (int k = 1; k < row->seen_count; k++)
-    if (abs(row->seen[k] - n) < abs(next - n)) next = row->seen[k];
-  if (next < n) step = -1;
-  for (int k = n + step; k != next; k += step)
-    if (rc_dash_is_missing(&f->sight, row, k)) return false;
-  return true;
-}
-
-/* The first rest that belongs to a row of which too few are seen. */
-static void gather_rest(const finder *f, rc_dash_row *row) {
-  for (int i = 0, n; i < f->sight.dashes.count && !row->has_rest; i++) {
-    const rc_dash *d = &f->sight.dashes.found[i];
-    double u, v;
-    row->has_rest = !d->complete && is_one_of(f, row, d, &n, &u, &v) && !is_seen(row, n) &&
-                    goes_on_to(f, row, n);
-    if (row->has_rest) row->rest = n;
-  }
-}
-
 static void gather(const finder *f, rc_dash_row *row) {
-  row->seen_count = 0, row->has_rest = false;
+  row->seen_count = 0;
   for (int i = 0, n; i < f->sight.dashes.count && row->seen_count < RC_MOST_IN_ROW; i++) {
-    const rc_dash *d = &f->sight.dashes.found[i];
-    double u, v;
-    if (d->complete && is_one_of(f, row, d, &n, &u, &v) && !is_seen(row, n))
-      row->seen[row->seen_count++] = n;
+    if (!is_one_of(f, row, &f->sight.dashes.found[i], &n)) continue;
+    bool again = false;
+    for (int k = 0; k < row->seen_count; k++) again |= row->seen[k] == n;
+    if (!again) row->seen[row->seen_count++] = n;
   }
-  if (row->seen_count > 0 && row->seen_count < ENOUGH_SEEN) gather_rest(f, row);
 }
-
-/* Whether it tells where the row's n-th is. */
-static bool tells(const finder *f, const rc_dash_row *row, const rc_dash *d, int *n, double *u,
-                  double *v) {
-  if (d->complete) return is_one_of(f, row, d, n, u, v);
-  return row->has_rest && is_one_of(f, row, d, n, u, v) && *n == row->rest;
-}
-
-static int told_by(const rc_dash_row *row) { return row->seen_count + row->has_rest; }
 
 /* How far the row goes. False: too many of its dashes are missing, or something lies between. */
 static bool find_ends(const finder *f, rc_dash_row *row) {
@@ -146,9 +90,8 @@ static void fit_line(const finder *f, rc_dash_row *row) {
   for (int pass = 0, n; pass < 2; pass++)
     for (int i = 0; i < f->sight.dashes.count; i++) {
       const rc_dash *d = &f->sight.dashes.found[i];
-      double u, v;
-      if (!tells(f, row, d, &n, &u, &v)) continue;
-      double q = d->w * d->w, du = u - mu, dv = v - mv;
+      if (!is_one_of(f, row, d, &n)) continue;
+      double q = d->w * d->w, du = d->u - mu, dv = d->v - mv;
       if (pass)
         uu += q * du * du, uv += q * du * dv, vv += q * dv * dv;
       else
@@ -164,13 +107,12 @@ static void fit_line(const finder *f, rc_dash_row *row) {
 
 /* And where they are due along it: of the n-th of places t, t (1 + n drift) = first + n period. */
 static void fit_places(const finder *f, rc_dash_row *row) {
-  int unknown = f->drifts && told_by(row) >= LEAST_DRIFTING ? 3 : 2;
+  int unknown = f->drifts && row->seen_count >= LEAST_DRIFTING ? 3 : 2;
   double m[9] = {0}, v[3] = {0}, scale = row->period;
   for (int i = 0, n; i < f->sight.dashes.count; i++) {
     const rc_dash *d = &f->sight.dashes.found[i];
-    double at_u, at_v;
-    if (!tells(f, row, d, &n, &at_u, &at_v)) continue;
-    double t = rc_dash_along(row, at_u, at_v) / scale, weight = d->w * d->w * d->w * d->w;
+    if (!is_one_of(f, row, d, &n)) continue;
+    double t = rc_dash_along(row, d->u, d->v) / scale, weight = d->w * d->w * d->w * d->w;
     double terms[3] = {1, n, -n * t};
     for (int k = 0; k < unknown; k++) {
       for (int j = 0; j < unknown; j++) m[k * unknown + j] += weight * terms[k] * terms[j];
@@ -187,13 +129,13 @@ static void grow(const finder *f, rc_dash_row *row) {
   int before;
   gather(f, row);
   do {
-    before = told_by(row);
+    before = row->seen_count;
     rc_dash_row old = *row;
     fit_places(f, row);
     fit_line(f, row);
     gather(f, row);
-    if (told_by(row) < before) *row = old;
-  } while (told_by(row) > before);
+    if (row->seen_count < before) *row = old;
+  } while (row->seen_count > before);
 }
 
 static rc_dash_row row_between(const rc_dash *p, const rc_dash *q) {
@@ -217,7 +159,7 @@ static bool is_taken(const rc_dash_rows *rows, const rc_dash *d) {
 /* The row of most dashes among those that lie in none yet. */
 static recede_status find_longest(rc_context *context, const finder *f, const rc_dash_rows *rows,
                                   rc_dash_row *best) {
-  best->seen_count = LEAST_DASHES - 1, best->has_rest = false;
+  best->seen_count = LEAST_DASHES - 1;
   for (int i = 0; i < f->sight.dashes.count; i++) {
     RC_TRY(rc_poll(context));
     for (int k = i + 1; k < f->sight.dashes.count; k++) {
@@ -229,10 +171,21 @@ static recede_status find_longest(rc_context *context, const finder *f, const rc
           row.period < SHORTEST_PERIOD * row.length || row.period > LONGEST_PERIOD * row.length)
         continue;
       grow(f, &row);
-      if (told_by(&row) > told_by(best) && find_ends(f, &row)) *best = row;
+      if (row.seen_count > best->seen_count && find_ends(f, &row)) *best = row;
     }
   }
   return RECEDE_OK;
+}
+
+/* Where its middle lies, or that of the one of which it is the rest. False: it is unlike the row's.
+ */
+static bool middle_of(const rc_dash_row *row, const rc_dash *d, double *u, double *v) {
+  rc_dash_rest rest;
+  *u = d->u, *v = d->v;
+  if (d->complete) return rc_dashes_alike(row, d->length, d->a, d->b);
+  if (!rc_dash_rest_of(row, d, &rest)) return false;
+  rc_dash_rest_middle(row, &rest, u, v);
+  return true;
 }
 
 /* Turns a row to where the rest of its only dash runs. */
@@ -277,15 +230,14 @@ static recede_status find_rows(rc_context *context, const finder *f, rc_dash_row
   for (rows->count = 0; rows->count < RC_MOST_DASH_ROWS; rows->count++) {
     rc_dash_row *next = &rows->rows[rows->count];
     RC_TRY(find_longest(context, f, rows, next));
-    if (told_by(next) < LEAST_DASHES) break;
+    if (next->seen_count < LEAST_DASHES) break;
   }
   return RECEDE_OK;
 }
 
 static int seen_in(const rc_dash_rows *rows) {
   int sum = 0;
-  for (int i = 0; i < rows->count; i++)
-    sum += OF_SEEN * rows->rows[i].seen_count + rows->rows[i].has_rest;
+  for (int i = 0; i < rows->count; i++) sum += rows->rows[i].seen_count;
   return sum;
 }
 

@@ -30,8 +30,6 @@ typedef struct rc_dash_row {
   bool ends[2];             /* there it is seen to have ended, at low and at high */
   int seen[RC_MOST_IN_ROW]; /* those wholly seen */
   int seen_count;
-  bool has_rest; /* of one more, which tells where it is */
-  int rest;      /* which */
   rc_dash_laid laid[RC_MOST_IN_ROW];
   int laid_count;
 } rc_dash_row;

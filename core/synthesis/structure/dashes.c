@@ -22,7 +22,6 @@
  * wide, and less where it is blurred. */
 #define LEAST_ELONGATION 2.5
 #define SAMPLES 4096
-#define MOVED_BY .01 /* of its length, to see what a ground becomes */
 
 typedef struct finder {
   const rc_image *image;
@@ -226,22 +225,6 @@ static bool place_on(const rc_ground *old, const rc_ground *ground, double *u, d
   return rc_ground_px(old, 0, *u, *v, &x, &y, w) && rc_ground_place(ground, 0, x, y, u, v, w);
 }
 
-/* Moments and where it is cut, by what the ground around its middle becomes. */
-static bool move_moments(const rc_dash *d, const rc_ground *old, const rc_ground *ground,
-                         rc_dash *to) {
-  double step = MOVED_BY * d->length, w, u[3], v[3];
-  for (int k = 0; k < 3; k++) {
-    u[k] = d->u + (k == 1 ? step : 0), v[k] = d->v + (k == 2 ? step : 0);
-    if (!place_on(old, ground, &u[k], &v[k], &w)) return false;
-  }
-  double a = (u[1] - u[0]) / step, b = (u[2] - u[0]) / step;
-  double c = (v[1] - v[0]) / step, e = (v[2] - v[0]) / step;
-  to->uu = a * a * d->uu + 2 * a * b * d->uv + b * b * d->vv;
-  to->uv = a * c * d->uu + (a * e + b * c) * d->uv + b * e * d->vv;
-  to->vv = c * c * d->uu + 2 * c * e * d->uv + e * e * d->vv;
-  return place_on(old, ground, &to->cut_u, &to->cut_v, &w);
-}
-
 void rc_dashes_move(const rc_dashes *from, const rc_ground *old, const rc_ground *ground,
                     rc_dashes *to) {
   *to = *from, to->count = 0;
@@ -254,9 +237,7 @@ void rc_dashes_move(const rc_dashes *from, const rc_ground *old, const rc_ground
       u[k] = d.u + half * (k < 2 ? d.a : -d.b), v[k] = d.v + half * (k < 2 ? d.b : d.a);
       seen = seen && place_on(old, ground, &u[k], &v[k], &w);
     }
-    if (!seen || !move_moments(&from->found[i], old, ground, &d) ||
-        !place_on(old, ground, &d.u, &d.v, &d.w))
-      continue;
+    if (!seen || !place_on(old, ground, &d.u, &d.v, &d.w)) continue;
     d.length = rc_distance(u[1] - u[0], v[1] - v[0]),
     d.width = rc_distance(u[3] - u[2], v[3] - v[2]);
     d.a = (u[1] - u[0]) / d.length, d.b = (v[1] - v[0]) / d.length;

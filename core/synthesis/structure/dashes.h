@@ -41,7 +41,8 @@ static inline bool rc_dashes_off(const rc_dashes *dashes, double x, double y, do
  */
 recede_status rc_dashes_find(rc_context *context, const rc_image *image, const rc_mask *flags,
                              const rc_ground *ground, int exponent, rc_dashes *dashes);
-/* The same dashes on another ground, nearly: what a px is there is not looked at anew. */
+/* The same dashes on another ground, nearly: what a px is there is not looked at anew, and their
+ * moments and where they are cut stay as they were. */
 void rc_dashes_move(const rc_dashes *from, const rc_ground *old, const rc_ground *ground,
                     rc_dashes *to);
 
