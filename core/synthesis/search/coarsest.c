@@ -81,10 +81,14 @@ static int work_of(int trials, int iterations) {
 }
 
 /* Of a trial, which the level then holds. */
-static double price_of_broken_lines(const rc_descent *e, rc_level *level, const rc_trial *trial) {
+static recede_status add_price_of_broken_lines(rc_context *context, const rc_descent *e,
+                                               rc_level *level, const rc_trial *trial,
+                                               double *price) {
+  double kept;
   rc_trial_restore(level, trial);
-  return PRICE_OF_BROKEN_LINES *
-         (1 - rc_lines_kept(level, e->lines, e->line_count, e->level_count - 1));
+  RC_TRY(rc_lines_kept(context, level, e->lines, e->line_count, e->level_count - 1, &kept));
+  *price += PRICE_OF_BROKEN_LINES * (1 - kept);
+  return RECEDE_OK;
 }
 
 /* Keeps the start that fits best, which the level then holds, and what it costs: its misfit, and
@@ -100,8 +104,8 @@ static recede_status try_starts(rc_context *context, const rc_descent *e, const 
     RC_TRY(start_once(context, e, s, s->first, level));
     RC_TRY(rc_iterate(context, e, exponent, s->first, 0, iterations, p, level, scratch));
     rc_trial_save(level, best);
-    *least = rc_misfit(level) + price_of_broken_lines(e, level, best);
-    return RECEDE_OK;
+    *least = rc_misfit(level);
+    return add_price_of_broken_lines(context, e, level, best, least);
   }
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, count, &trials));
@@ -126,7 +130,7 @@ static recede_status try_starts(rc_context *context, const rc_descent *e, const 
     *least = misfit;
     rc_trial_save(level, best);
   }
-  *least += price_of_broken_lines(e, level, best);
+  RC_TRY(add_price_of_broken_lines(context, e, level, best, least));
   rc_release(context, mark);
   return RECEDE_OK;
 }

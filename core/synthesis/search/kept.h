@@ -7,6 +7,7 @@
 
 /* How much of the lines' contrast on the hole's border the level's guide has in the hole, 0..1: the
  * mean over them. A line too short to be measured at this level counts as kept. */
-double rc_lines_kept(const rc_level *level, const rc_crossing *lines, int count, int exponent);
+recede_status rc_lines_kept(rc_context *context, const rc_level *level, const rc_crossing *lines,
+                            int count, int exponent, double *kept);
 
 #endif

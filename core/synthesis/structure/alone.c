@@ -31,7 +31,7 @@ static bool profile_of(const beside *at, rc_copy move, float outwards, rc_profil
   const rc_place *end = outwards < 0 ? &a : &b;
   float dx = b.x - a.x, dy = b.y - a.y, length = sqrtf(dx * dx + dy * dy);
   if (a.beyond || b.beyond || !(length > 0)) return false;
-  rc_ruler ruler = {rc_seen_source, at->picture, dx / length, dy / length, NULL};
+  rc_ruler ruler = {at->picture, dx / length, dy / length, NULL};
   return rc_profile_mean(&ruler, end->x + at->flat.x0, end->y + at->flat.y0,
                          outwards * RC_PROFILE_FROM_PX, outwards * STEP_PX, RUN, profile);
 }

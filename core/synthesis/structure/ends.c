@@ -137,7 +137,7 @@ static bool leads_nowhere(const rc_seen *seen, float x, float y, float ux, float
 /* Where all four pixels around a sample are sources it is taken between them. */
 static void look_between(const rc_seen *seen, float x, float y, float ux, float uy, float apart,
                          row *to) {
-  const rc_ruler ruler = {rc_seen_source, seen, ux, uy, NULL};
+  const rc_ruler ruler = {seen, ux, uy, NULL};
   for (int o = 0; o < RC_PROFILE; o++) {
     float across = (float)(o - RC_PROFILE_HALF) * apart;
     if (!isnan(to->at[o])) rc_ruler_sample(&ruler, x - uy * across, y + ux * across, &to->at[o]);

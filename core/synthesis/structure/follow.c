@@ -105,7 +105,7 @@ static void set_frame(frame *f) {
 
 static frame frame_of(const rc_seen *picture, const rc_chart *chart, int windows,
                       const struct way *way, rc_crossing *line) {
-  frame f = {.ruler = {.value = rc_seen_source, .picture = picture},
+  frame f = {.ruler = {.picture = picture},
              .chart = chart,
              .line = line,
              .most_reduced = way->most_reduced,

@@ -243,11 +243,6 @@ static recede_status follow_parallel(rc_context *context, const rc_seen *seen,
   return RECEDE_OK;
 }
 
-const float *rc_brightness_axis(const rc_image *image) {
-  static const float grey[3] = {1, 0, 0}, colours[3] = {.3f, .59f, .11f};
-  return image->channels == 1 ? grey : colours;
-}
-
 int rc_lines_level(const rc_mask *masks, int levels) {
   for (int exponent = 0; exponent < levels; exponent++) {
     int border_count = rc_border_length(&masks[exponent]);

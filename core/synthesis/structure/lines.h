@@ -18,8 +18,6 @@ int rc_lines_level(const rc_mask *masks, int levels);
  * flags: of the same level. */
 float rc_part_in_the_hole(const rc_mask *flags, const rc_crossing *line);
 bool rc_lies_in_the_hole(const rc_mask *flags, const rc_crossing *line);
-/* The weights of colours that lines are looked for by. */
-const float *rc_brightness_axis(const rc_image *image);
 /* All that look the same on both sides of the hole, strongest first, px of that level. faint: if
  * there are none, fainter ones. */
 recede_status rc_lines_at(rc_context *context, const rc_seen *seen, bool faint,

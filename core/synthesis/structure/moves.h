@@ -4,6 +4,7 @@
 
 #include "image/image.h"
 #include "synthesis/copy.h"
+#include "synthesis/structure/seen.h"
 #include "synthesis/structure/sides.h"
 
 #define RC_MOVES_POINTS 2000
@@ -12,8 +13,7 @@
 
 /* Points of a level's sources that are looked at, of scales near the hole's. */
 typedef struct rc_moves {
-  const rc_image *image;
-  const rc_mask *flags;
+  rc_seen picture; /* its brightness */
   rc_chart chart;
   double most_change; /* squared: of any point no more counts; INFINITY: all does */
   int count;
@@ -22,8 +22,9 @@ typedef struct rc_moves {
 
 /* near_hole: within half of the hole's longer side from it. beside: only where its distance is
  * positive; NULL: all. */
-void rc_moves_set(const rc_image *image, const rc_mask *flags, rc_chart chart, bool near_hole,
-                  const rc_boundary *beside, rc_moves *moves);
+recede_status rc_moves_set(rc_context *context, const rc_image *image, const rc_mask *flags,
+                           rc_chart chart, bool near_hole, const rc_boundary *beside,
+                           rc_moves *moves);
 
 /* What one point changes by, squared, where the plane is moved by (a, b); NAN: that is not seen. */
 float rc_moves_change_of(const rc_moves *moves, int point, float a, float b);

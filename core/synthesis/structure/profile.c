@@ -7,13 +7,55 @@
 #define LEAST_SAMPLE_PX .5f
 #define MOST_SAMPLE_PX 3.f
 
+/* A row of samples across, and one more: the compiler makes vectors of it. */
+#define LANES (RC_PROFILE + 1)
+
+static int floor_of(float value) {
+  int whole = (int)value;
+  return whole - ((float)whole > value);
+}
+
+/* Whether there are pixels to all sides of what lies between (x, y) and the next ones. */
+static bool is_within(const rc_mask *flags, int x, int y) {
+  return x >= 0 && y >= 0 && x < flags->width - 1 && y < flags->height - 1;
+}
+
+static float between(float a, float b, float c, float d, float fx, float fy) {
+  return (a * (1 - fx) + b * fx) * (1 - fy) + (c * (1 - fx) + d * fx) * fy;
+}
+
 bool rc_ruler_sample(const rc_ruler *ruler, float x, float y, float *value) {
-  int px = (int)floorf(x), py = (int)floorf(y);
-  float v[4], fx = x - (float)px, fy = y - (float)py;
-  for (int k = 0; k < 4; k++)
-    if (!ruler->value(ruler->picture, px + (k & 1), py + (k >> 1), &v[k])) return false;
-  *value = (v[0] * (1 - fx) + v[1] * fx) * (1 - fy) + (v[2] * (1 - fx) + v[3] * fx) * fy;
+  int px = floor_of(x), py = floor_of(y), width = ruler->picture->flags->width;
+  if (!is_within(ruler->picture->flags, px, py)) return false;
+  const float *v = ruler->picture->value + (size_t)py * (size_t)width + (size_t)px;
+  float here = between(v[0], v[1], v[width], v[width + 1], x - (float)px, y - (float)py);
+  if (isnan(here)) return false;
+  *value = here;
   return true;
+}
+
+/* RC_PROFILE samples so far from each other across (x, y); NAN: it is not seen. */
+static void sample_across(const rc_ruler *ruler, float x, float y, float apart,
+                          float value[LANES]) {
+  const rc_mask *flags = ruler->picture->flags;
+  float at_x[LANES], at_y[LANES], corner[4][LANES];
+  int px[LANES], py[LANES];
+  for (int o = 0; o < LANES; o++) {
+    float off = (float)(o - RC_PROFILE_HALF) * apart;
+    at_x[o] = x - ruler->uy * off, at_y[o] = y + ruler->ux * off;
+    px[o] = floor_of(at_x[o]), py[o] = floor_of(at_y[o]);
+  }
+  for (int o = 0; o < RC_PROFILE; o++) {
+    bool within = is_within(flags, px[o], py[o]);
+    const float *v = ruler->picture->value;
+    if (within) v += (size_t)py[o] * (size_t)flags->width + (size_t)px[o];
+    for (int k = 0; k < 4; k++)
+      corner[k][o] = within ? v[(k >> 1) * flags->width + (k & 1)] : NAN;
+  }
+  for (int k = 0; k < 4; k++) corner[k][RC_PROFILE] = NAN;
+  for (int o = 0; o < LANES; o++)
+    value[o] = between(corner[0][o], corner[1][o], corner[2][o], corner[3][o],
+                       at_x[o] - (float)px[o], at_y[o] - (float)py[o]);
 }
 
 float rc_ruler_px(const rc_chart *chart, float x, float y) {
@@ -40,10 +82,22 @@ bool rc_ruler_mean(const rc_ruler *ruler, float x, float y, float across, float 
 
 bool rc_profile_mean(const rc_ruler *ruler, float x, float y, float from, float step, int count,
                      rc_profile *profile) {
+  float sum[LANES] = {0}, value[LANES];
+  int found[LANES] = {0};
+  for (int k = 0; k < count; k++) {
+    float along = from + step * (float)k;
+    float px = x + ruler->ux * along, py = y + ruler->uy * along;
+    sample_across(ruler, px, py, rc_ruler_px(ruler->chart, px, py), value);
+    for (int o = 0; o < LANES; o++) {
+      bool seen = !isnan(value[o]);
+      sum[o] += seen ? value[o] : 0.f;
+      found[o] += seen;
+    }
+  }
   profile->tone = 0;
   for (int o = 0; o < RC_PROFILE; o++) {
-    float across = (float)(o - RC_PROFILE_HALF);
-    if (!rc_ruler_mean(ruler, x, y, across, from, step, count, &profile->mean[o])) return false;
+    if (3 * found[o] < count) return false;
+    profile->mean[o] = sum[o] / (float)(found[o] ? found[o] : 1);
     profile->tone += profile->mean[o] / RC_PROFILE;
   }
   for (int o = 0; o < RC_PROFILE; o++) profile->mean[o] -= profile->tone;

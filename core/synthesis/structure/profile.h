@@ -2,7 +2,7 @@
 #ifndef RECEDE_SYNTHESIS_STRUCTURE_PROFILE_H
 #define RECEDE_SYNTHESIS_STRUCTURE_PROFILE_H
 
-#include "synthesis/copy.h"
+#include "synthesis/structure/seen.h"
 
 /* So many samples. */
 #define RC_PROFILE_HALF 3
@@ -13,10 +13,9 @@
 /* A line's own profile is that of so many px. */
 #define RC_PROFILE_NEAR_PX 14
 
-/* A line in a picture. value: the brightness of one pixel; false: it is none to look at. */
+/* A line in a picture. */
 typedef struct rc_ruler {
-  bool (*value)(const void *picture, int x, int y, float *value);
-  const void *picture;
+  const rc_seen *picture;
   float ux, uy;          /* the line's direction, a unit vector */
   const rc_chart *chart; /* of the same level: samples are w px apart; NULL: 1 px */
 } rc_ruler;

@@ -215,15 +215,15 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
   if (told) {
     along = median_of(chart, lines, *count);
   } else {
-    rc_moves_set(&images[coarse], flags, here, true, NULL, m);
+    RC_TRY(rc_moves_set(context, &images[coarse], flags, here, true, NULL, m));
     int strip = (RC_STRIP_PX << from) >> coarse;
     told = scan(m, &along) && leaves_the_picture(&here, flags, strip, along);
   }
-  if (told) rc_moves_set(&images[coarse], flags, here, false, NULL, m);
+  if (told) RC_TRY(rc_moves_set(context, &images[coarse], flags, here, false, NULL, m));
   if (told && runs(m, along)) {
     float reach_px = how_far(lines, *count, &masks[0]);
     rc_rails r = sharpened(m, along, reach_px / (float)(1 << coarse), COARSE_TURN);
-    rc_moves_set(&images[fine], &masks[fine], rc_chart_coarser(*chart, fine), false, NULL, m);
+    RC_TRY(rc_moves_set(context, &images[fine], &masks[fine], rc_chart_coarser(*chart, fine), false, NULL, m));
     r = sharpened(m, r, reach_px / (float)(1 << fine), FINE_TURN);
     if (!has_marking(lines, *count) && keep_lines_straight(chart, lines, *count, coarse, r))
       *rails = r;
@@ -249,7 +249,7 @@ recede_status rc_runs_on_both_sides(rc_context *context, const rc_image *images,
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, 1, &m));
   for (int i = 0; i < 2 && *result; i++, side = rc_other_side(side)) {
-    rc_moves_set(&images[coarsest], &masks[coarsest], here, false, &side, m);
+    RC_TRY(rc_moves_set(context, &images[coarsest], &masks[coarsest], here, false, &side, m));
     *result = runs(m, *rails);
   }
   rc_release(context, mark);

@@ -80,7 +80,7 @@ recede_status rc_repeats_near(rc_context *context, const rc_image *image, const 
   rc_moves *m;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, 1, &m));
-  rc_moves_set(image, flags, *chart, true, NULL, m);
+  RC_TRY(rc_moves_set(context, image, flags, *chart, true, NULL, m));
   RC_TRY(repeats(context, m, a, b, result));
   rc_release(context, mark);
   return RECEDE_OK;
@@ -97,8 +97,8 @@ recede_status rc_repeats_beside(rc_context *context, const rc_image *images, con
   RC_TRY(RC_NEW(context, 1, &m));
   if (boundary->nx * (x - chart->x0) + boundary->ny * (y - chart->y0) + boundary->at < 0)
     b = rc_other_side(b);
-  rc_moves_set(&images[coarsest], &masks[coarsest], rc_chart_coarser(*chart, coarsest), false, &b,
-               m);
+  RC_TRY(rc_moves_set(context, &images[coarsest], &masks[coarsest], rc_chart_coarser(*chart, coarsest), false, &b,
+               m));
   RC_TRY(repeats(context, m, d.a, d.b, result));
   rc_release(context, mark);
   return RECEDE_OK;

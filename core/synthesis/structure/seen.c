@@ -4,11 +4,16 @@
 
 #include "base/memory.h"
 
-bool rc_seen_source(const void *user, int x, int y, float *value) {
-  const rc_seen *picture = user;
+/* False: (x, y) is no source. */
+static bool source_at(const rc_seen *picture, int x, int y, float *value) {
   if (!rc_inside(picture->flags->width, picture->flags->height, x, y)) return false;
   *value = picture->value[(size_t)y * (size_t)picture->flags->width + (size_t)x];
   return !isnan(*value);
+}
+
+const float *rc_brightness_axis(const rc_image *image) {
+  static const float grey[3] = {1, 0, 0}, colours[3] = {.3f, .59f, .11f};
+  return image->channels == 1 ? grey : colours;
 }
 
 recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *flags,
@@ -36,7 +41,7 @@ recede_status rc_see_contrast(rc_context *context, rc_seen *seen) {
       contrast[at] = NAN;
       if (isnan(seen->value[at])) continue;
       for (int k = 0; k < 9; k++) {
-        if (!rc_seen_source(seen, x - 1 + k % 3, y - 1 + k / 3, &value)) continue;
+        if (!source_at(seen, x - 1 + k % 3, y - 1 + k / 3, &value)) continue;
         sum += value, square += value * value, count++;
       }
       contrast[at] = sqrtf(fmaxf(square / count - sum / count * (sum / count), 0.f));

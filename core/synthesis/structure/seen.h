@@ -14,8 +14,8 @@ typedef struct rc_seen {
   const rc_chart *narrows;
 } rc_seen;
 
-/* Of an rc_seen; false: (x, y) is no source. */
-bool rc_seen_source(const void *seen, int x, int y, float *value);
+/* The weights of colours that lines are looked for by. */
+const float *rc_brightness_axis(const rc_image *image);
 /* The level's pixels by these weights of their channels. */
 recede_status rc_see(rc_context *context, const rc_image *image, const rc_mask *flags,
                      const float axis[3], rc_seen *seen);
