@@ -41,7 +41,7 @@ void recede_job_free(recede_job **job) {
 
 const char *recede_job_message(const recede_job *job) { return job->context.message; }
 const recede_report *recede_job_report(const recede_job *job) { return &job->context.report; }
-void recede_job_cancel(recede_job *job) { atomic_store(&job->context.cancelled, 1); }
+void recede_job_cancel(recede_job *job) { atomic_store(job->context.cancelled, 1); }
 
 static recede_status set_view(recede_job *job, recede_view *held, const recede_view *view,
                               const char *name, int channels) {
@@ -109,7 +109,7 @@ static recede_status end(recede_job *job, recede_status status) {
   rc_stage_end(context);
   context->report.peak_bytes = context->peak_bytes;
   rc_release(context, NULL);
-  atomic_store(&context->cancelled, 0);
+  atomic_store(context->cancelled, 0);
   if (status == RECEDE_OK) context->message[0] = '\0';
   return status;
 }

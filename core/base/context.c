@@ -29,6 +29,7 @@ void rc_context_init(rc_context *context, const recede_host *host) {
   if (host)
     memcpy(&context->host, host,
            host->struct_size < sizeof *host ? host->struct_size : sizeof *host);
+  context->cancelled = &context->cancel_flag;
   context->threads = resolved_threads(context->host.threads);
   context->limit_bytes =
       context->host.memory_bytes ? context->host.memory_bytes : rc_machine_memory_bytes() / 4 * 3;
@@ -37,6 +38,30 @@ void rc_context_init(rc_context *context, const recede_host *host) {
 void rc_context_clear(rc_context *context) {
   rc_pool_free(context);
   rc_release(context, NULL);
+}
+
+void rc_context_part(rc_context *context, int parts, rc_context *part) {
+  memset(part, 0, sizeof *part);
+  part->host = context->host;
+  part->threads = 1;
+  part->cancelled = context->cancelled;
+  part->limit_bytes = (context->limit_bytes - context->used_bytes) / (uint64_t)parts;
+  part->allocations = context->allocations;
+  part->stage = context->stage;
+  part->last_poll = context->last_poll;
+  part->fraction = context->fraction;
+  part->fraction_from = context->fraction_from, part->fraction_to = context->fraction_to;
+}
+
+void rc_context_join(rc_context *context, rc_context *parts, int count) {
+  uint64_t peak = context->used_bytes;
+  for (int i = 0; i < count; i++) {
+    peak += parts[i].peak_bytes;
+    if (parts[i].allocations > context->allocations) context->allocations = parts[i].allocations;
+    context->fraction = fmax(context->fraction, parts[i].fraction);
+    rc_context_clear(&parts[i]);
+  }
+  if (peak > context->peak_bytes) context->peak_bytes = peak;
 }
 
 recede_status rc_fail(rc_context *context, recede_status status, const char *format, ...) {
@@ -95,7 +120,7 @@ static recede_status ask_host(rc_context *context) {
   if (context->host.progress &&
       context->host.progress(context->host.user, context->stage ? context->stage : "",
                              context->fraction))
-    atomic_store(&context->cancelled, 1);
+    atomic_store(context->cancelled, 1);
   return rc_cancelled(context) ? rc_fail(context, RECEDE_CANCELLED, "Cancelled.") : RECEDE_OK;
 }
 

@@ -13,7 +13,7 @@ typedef struct rc_pool rc_pool;
 typedef struct rc_context {
   recede_host host;
   int threads; /* resolved: 1..64 */
-  atomic_int cancelled;
+  atomic_int cancel_flag, *cancelled; /* its own, or the one of what it is a part of */
   rc_block *blocks; /* newest first */
   uint64_t used_bytes, peak_bytes, limit_bytes, allocations;
   rc_pool *pool;
@@ -35,6 +35,11 @@ typedef struct rc_context {
 
 void rc_context_init(rc_context *context, const recede_host *host);
 void rc_context_clear(rc_context *context);
+/* One of so many parts of it, for one thread: with its part of what memory is left. */
+void rc_context_part(rc_context *context, int parts, rc_context *part);
+/* Gives a part's memory back. Parts count their allocations from the same number on, and all may
+ * have had the most they ever had at once. */
+void rc_context_join(rc_context *context, rc_context *parts, int count);
 
 /* Formats the message that recede_job_message() shows and returns status. */
 recede_status rc_fail(rc_context *context, recede_status status, const char *format, ...)
@@ -55,7 +60,7 @@ recede_status rc_poll(rc_context *context);
 /* Loops over single pixels, one after another, ask it every so many. */
 #define RC_POLLED_PX 4096
 static inline bool rc_cancelled(const rc_context *context) {
-  return atomic_load_explicit(&context->cancelled, memory_order_relaxed) != 0;
+  return atomic_load_explicit(context->cancelled, memory_order_relaxed) != 0;
 }
 double rc_seconds(void);
 

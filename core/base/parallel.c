@@ -4,6 +4,8 @@
 #include <signal.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 struct rc_pool {
   pthread_mutex_t lock;
   pthread_cond_t wake, done;
@@ -94,6 +96,49 @@ recede_status rc_parallel(rc_context *context, int count, rc_work *work, void *u
     pthread_mutex_unlock(&pool->lock);
   }
   return rc_cancelled(context) ? rc_poll(context) : RECEDE_OK;
+}
+
+typedef struct lanes {
+  rc_context *contexts;
+  rc_task *task;
+  void *user;
+  recede_status *status; /* of each item */
+  int *lane;             /* where it was done */
+  int count;
+  atomic_int next, failed;
+} lanes;
+
+/* The host is asked by the calling thread only. */
+static void run_lane(void *user, int lane, int thread) {
+  lanes *l = user;
+  rc_context *own = &l->contexts[lane];
+  if (thread) own->host.progress = NULL;
+  while (!atomic_load_explicit(&l->failed, memory_order_relaxed)) {
+    int item = atomic_fetch_add_explicit(&l->next, 1, memory_order_relaxed);
+    if (item >= l->count) return;
+    l->lane[item] = lane;
+    l->status[item] = l->task(own, l->user, item, lane);
+    rc_release(own, NULL);
+    if (l->status[item] != RECEDE_OK) atomic_store(&l->failed, 1);
+  }
+}
+
+recede_status rc_parallel_tasks(rc_context *context, int count, int lane_count, rc_task *task,
+                                void *user) {
+  lanes l = {.task = task, .user = user, .count = count};
+  recede_status status;
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW(context, lane_count, &l.contexts));
+  RC_TRY(RC_NEW_ZERO(context, count, &l.status));
+  RC_TRY(RC_NEW_ZERO(context, count, &l.lane));
+  for (int i = 0; i < lane_count; i++) rc_context_part(context, lane_count, &l.contexts[i]);
+  status = rc_parallel(context, lane_count, run_lane, &l);
+  for (int i = 0; i < count && status == RECEDE_OK; i++)
+    if (l.status[i] != RECEDE_OK)
+      status = rc_fail(context, l.status[i], "%s", l.contexts[l.lane[i]].message);
+  rc_context_join(context, l.contexts, lane_count);
+  rc_release(context, mark);
+  return status;
 }
 
 void rc_pool_free(rc_context *context) {

@@ -272,7 +272,7 @@ static float gain_at(const float *gains, int classes, float position) {
 typedef struct application {
   const bands *bands;
   const rc_level *level;
-  const uint8_t *depth;
+  const uint8_t *depth; /* in the hole, px, of each pixel of the box */
   float gains[BANDS][RC_ALL_CLASSES];
   float *layers[BANDS]; /* smoothed once, twice */
   rc_image *residual;
@@ -288,7 +288,7 @@ static void apply_row(void *user, int y, int thread) {
     int px = b->box.x0 + x, py = b->box.y0 + y;
     size_t i = ((size_t)y * (size_t)b->width + (size_t)x) * (size_t)b->channels;
     if (!rc_level_is_target(level, px, py) || class_at(level, px, py, &position) < 0) continue;
-    float depth = (float)a->depth[(size_t)py * (size_t)level->width + (size_t)px];
+    float depth = (float)a->depth[(size_t)y * (size_t)b->width + (size_t)x];
     int first = level->ranges.count * side_at(level, px, py);
     float ramp = fminf(depth / (RAMP_PX + 1.f), 1.f), more[BANDS];
     float *pixel = rc_pixel(a->residual, px, py);
@@ -302,6 +302,22 @@ static void apply_row(void *user, int y, int thread) {
   }
 }
 
+/* The box reaches beyond the hole, or ends where the picture does: what lies farther tells nothing.
+ */
+static recede_status find_depth(rc_context *context, const bands *b, const rc_level *level,
+                                uint8_t *depth) {
+  size_t width = (size_t)b->width;
+  uint8_t *flags;
+  RC_TRY(RC_NEW(context, width * (size_t)b->height, &flags));
+  for (int y = 0; y < b->height; y++)
+    memcpy(flags + (size_t)y * width,
+           level->flags + (size_t)(b->box.y0 + y) * (size_t)level->width + (size_t)b->box.x0,
+           width);
+  rc_distance_inside(flags, RC_TARGET, b->width, b->height, false, depth);
+  RC_FREE(context, &flags);
+  return rc_poll(context);
+}
+
 recede_status rc_match_detail(rc_context *context, const rc_level *level, rc_image *residual) {
   bands b = {.box = rc_box_grown(level->box, SURROUNDINGS_PX, level->width, level->height),
              .channels = residual->channels};
@@ -313,7 +329,8 @@ recede_status rc_match_detail(rc_context *context, const rc_level *level, rc_ima
   b.width = b.box.x1 - b.box.x0, b.height = b.box.y1 - b.box.y0;
   size_t row = (size_t)b.width * (size_t)b.channels, values = row * (size_t)b.height;
   m.strip_count = (b.height + STRIP_ROWS - 1) / STRIP_ROWS;
-  RC_TRY(RC_NEW(context, (size_t)level->width * (size_t)level->height, &depth));
+  RC_TRY(RC_NEW(context, (size_t)b.width * (size_t)b.height, &depth));
+  RC_TRY(find_depth(context, &b, level, depth));
   RC_TRY(RC_NEW(context, values, &scratch));
   RC_TRY(RC_NEW(context, m.strip_count, &m.strips));
   RC_TRY(RC_NEW(context, (size_t)b.height * (size_t)b.width, &m.group));
@@ -329,7 +346,6 @@ recede_status rc_match_detail(rc_context *context, const rc_level *level, rc_ima
     gains_of(&m.all, &level->ranges, a.gains[n]);
     m.fine = a.layers[n], m.fine_row = row;
   }
-  rc_distance_inside(level->flags, RC_TARGET, level->width, level->height, false, depth);
   a.depth = depth;
   RC_TRY(rc_parallel(context, b.height, apply_row, &a));
   rc_release(context, mark);

@@ -10,15 +10,12 @@
 #include "synthesis/search/lattice_find.h"
 #include "synthesis/search/lock.h"
 #include "synthesis/search/regular.h"
-#include "synthesis/search/search.h"
-#include "synthesis/search/start.h"
-#include "synthesis/search/trial.h"
+#include "synthesis/search/starts.h"
 #include "synthesis/search/whole.h"
 
-/* Broken lines are seen first: they cost on top of a start's misfit. Starts that continue them may
- * fit worse, for finer levels break what the coarsest still has, and thin lines are faint there: a
- * crack across a road without dashes to copy 1.4 to 1.7 times as badly. */
-#define PRICE_OF_BROKEN_LINES .3
+/* Starts that continue lines may fit worse, for finer levels break what the coarsest still has, and
+ * thin lines are faint there: a crack across a road without dashes to copy 1.4 to 1.7 times as
+ * badly. */
 #define FAVOUR_OF_RAILS 1.3
 #define FAVOUR_OF_LINES 1.8
 #define FAVOUR_OF_CLEAR_LINES 2.
@@ -47,93 +44,6 @@
 #define MOST_WITHOUT_COPY .06
 /* Where an earlier fill kept to the rails, the rest is tried again later. */
 #define MOST_WITHOUT_KEPT .5
-/* Boards have so many times the copies, for each has its own. */
-#define EACH_BOARD 3
-
-/* Some of all trials: starts by patches first, then those of few whole copies, which are these
- * moves or, where there are none, chance ones. */
-typedef struct starts {
-  int first, first_whole, end;
-  const rc_copy *moves;
-  int move_count;
-} starts;
-
-static recede_status start_once(rc_context *context, const rc_descent *e, const starts *s,
-                                int trial, rc_level *level) {
-  static const int copies[] = {16, 8, 4};
-  rc_search search = {.kernels = e->kernels,
-                      .key = rc_key((uint64_t)e->params->seed, 99, (uint32_t)trial),
-                      .periods = e->periods.copies,
-                      .period_count = e->periods.count,
-                      .anywhere = rc_effort_of(e->params)->start_tries};
-  if (trial < s->first_whole) return rc_start(context, level, &search);
-  return rc_start_whole(context, level, search.key, s->moves, s->move_count,
-                        (level->board ? EACH_BOARD : 1) * copies[(trial - s->first_whole) % 3]);
-}
-
-/* All trials get a third of their iterations, the better half of them the rest. Of two both get
- * all: a third of a draft's few says too little. */
-static int first_part(int iterations) { return (iterations + 2) / 3; }
-static int better_half(int trials) { return trials <= 2 ? trials : (trials + 1) / 2; }
-static int work_of(int trials, int iterations) {
-  int part = first_part(iterations);
-  return trials * part + better_half(trials) * (iterations - part);
-}
-
-/* Of a trial, which the level then holds. */
-static recede_status add_price_of_broken_lines(rc_context *context, const rc_descent *e,
-                                               rc_level *level, const rc_trial *trial,
-                                               double *price) {
-  double kept;
-  rc_trial_restore(level, trial);
-  RC_TRY(rc_lines_kept(context, level, e->lines, e->line_count, e->level_count - 1, &kept));
-  *price += PRICE_OF_BROKEN_LINES * (1 - kept);
-  return RECEDE_OK;
-}
-
-/* Keeps the start that fits best, which the level then holds, and what it costs: its misfit, and
- * the lines that it breaks. */
-static recede_status try_starts(rc_context *context, const rc_descent *e, const starts *s,
-                                rc_pace *p, rc_level *level, rc_workspace *scratch, rc_trial *best,
-                                double *least) {
-  int exponent = e->level_count - 1, count = s->end - s->first;
-  int iterations = rc_iterations_at(e, exponent), part = first_part(iterations);
-  rc_trial *trials;
-  double *misfits;
-  if (count == 1) { /* of large levels: no room for more */
-    RC_TRY(start_once(context, e, s, s->first, level));
-    RC_TRY(rc_iterate(context, e, exponent, s->first, 0, iterations, p, level, scratch));
-    rc_trial_save(level, best);
-    *least = rc_misfit(level);
-    return add_price_of_broken_lines(context, e, level, best, least);
-  }
-  rc_block *mark = rc_mark(context);
-  RC_TRY(RC_NEW(context, count, &trials));
-  RC_TRY(RC_NEW(context, count, &misfits));
-  for (int n = 0; n < count; n++) {
-    RC_TRY(rc_trial_new(context, level, &trials[n]));
-    RC_TRY(start_once(context, e, s, s->first + n, level));
-    RC_TRY(rc_iterate(context, e, exponent, s->first + n, 0, part, p, level, scratch));
-    misfits[n] = rc_misfit(level);
-    rc_trial_save(level, &trials[n]);
-  }
-  *least = INFINITY;
-  for (int k = 0; k < better_half(count); k++) {
-    int n = 0;
-    for (int i = 1; i < count; i++)
-      if (misfits[i] < misfits[n]) n = i;
-    misfits[n] = INFINITY;
-    rc_trial_restore(level, &trials[n]);
-    RC_TRY(rc_iterate(context, e, exponent, s->first + n, part, iterations, p, level, scratch));
-    double misfit = rc_misfit(level);
-    if (misfit >= *least) continue;
-    *least = misfit;
-    rc_trial_save(level, best);
-  }
-  RC_TRY(add_price_of_broken_lines(context, e, level, best, least));
-  rc_release(context, mark);
-  return RECEDE_OK;
-}
 
 /* The part of the targets that has no copy. */
 static double without_copy(const rc_level *level) {
@@ -173,10 +83,10 @@ static recede_status moves_along(rc_context *context, const rc_descent *e, const
 static recede_status start_on_rails(rc_context *context, const rc_descent *e, int first, int count,
                                     double without, rc_pace *p, rc_level *level,
                                     rc_workspace *scratch, rc_trial *best, double *own) {
-  starts s = {first, first, first + count, NULL, 0};
+  rc_starts s = {first, first, first + count, NULL, 0};
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
   RC_TRY(rc_reach_moves(context, level, s.moves, s.move_count));
-  RC_TRY(try_starts(context, e, &s, p, level, scratch, best, own));
+  RC_TRY(rc_try_starts(context, e, &s, p, level, scratch, best, own));
   /* Where few had a copy before half of these must have: an empty start fits well. */
   double most = fmin(without + MOST_WITHOUT_COPY, .5 * (1 + without));
   if (without_copy(level) > most) *own = INFINITY;
@@ -187,8 +97,8 @@ static recede_status start_on_rails(rc_context *context, const rc_descent *e, in
  * on them. */
 static recede_status keep_to_rails(rc_context *context, rc_descent *e, int count, rc_level *level,
                                    rc_workspace *scratch, bool *kept) {
-  rc_pace p = {0, work_of(count, rc_iterations_at(e, e->level_count - 1))};
-  starts s = {0, 0, count, NULL, 0};
+  rc_pace p = {0, rc_work_of_starts(count, rc_iterations_at(e, e->level_count - 1))};
+  rc_starts s = {0, 0, count, NULL, 0};
   rc_trial best;
   rc_ranges ranges = level->ranges;
   double own;
@@ -198,7 +108,7 @@ static recede_status keep_to_rails(rc_context *context, rc_descent *e, int count
   RC_TRY(moves_along(context, e, level, &s.moves, &s.move_count));
   RC_TRY(rc_reach_moves(context, level, s.moves, s.move_count));
   e->on_rails = true;
-  RC_TRY(try_starts(context, e, &s, &p, level, scratch, &best, &own));
+  RC_TRY(rc_try_starts(context, e, &s, &p, level, scratch, &best, &own));
   rc_release(context, mark);
   *kept = e->on_rails = without_copy(level) <= MOST_WITHOUT_KEPT;
   if (!*kept) level->ranges = ranges;
@@ -241,13 +151,13 @@ static double favour_of(const rc_crossing *line) {
 }
 
 /* Starts with the lines locked. */
-static recede_status try_lines(rc_context *context, rc_descent *e, const starts *s, rc_pace *p,
+static recede_status try_lines(rc_context *context, rc_descent *e, const rc_starts *s, rc_pace *p,
                                rc_level *level, rc_workspace *scratch, double misfit) {
   rc_trial best;
   double own, favour = 0;
   RC_TRY(rc_trial_new(context, level, &best));
   RC_TRY(rc_lines_lock(context, e->lines, e->line_count, e->level_count - 1, level));
-  RC_TRY(try_starts(context, e, s, p, level, scratch, &best, &own));
+  RC_TRY(rc_try_starts(context, e, s, p, level, scratch, &best, &own));
   for (int i = 0; i < e->line_count; i++) favour = fmax(favour, favour_of(&e->lines[i]));
   e->continue_lines = e->lines_taken || own < favour * misfit;
   if (!e->continue_lines) RC_FREE(context, &level->locked);
@@ -269,7 +179,7 @@ static void take_kinds(rc_descent *e, const rc_chart *from) {
 static recede_status try_periods(rc_context *context, rc_descent *e, int first, int count,
                                  rc_pace *p, rc_level *level, rc_workspace *scratch, rc_trial *best,
                                  double *misfit) {
-  starts s = {first, first, first + count, NULL, 0};
+  rc_starts s = {first, first, first + count, NULL, 0};
   rc_trial by_periods;
   double own;
   rc_chart chart = level->chart;
@@ -278,7 +188,7 @@ static recede_status try_periods(rc_context *context, rc_descent *e, int first, 
   RC_TRY(rc_moves_by_periods(context, &e->periods, &s.moves, &s.move_count));
   level->chart = rc_chart_flat(chart);
   RC_TRY(rc_reach_moves(context, level, s.moves, s.move_count));
-  RC_TRY(try_starts(context, e, &s, p, level, scratch, &by_periods, &own));
+  RC_TRY(rc_try_starts(context, e, &s, p, level, scratch, &by_periods, &own));
   e->by_periods = own < favour_of_periods(&e->periods) * *misfit;
   if (e->by_periods)
     *misfit = own, *best = by_periods;
@@ -293,14 +203,14 @@ static recede_status try_periods(rc_context *context, rc_descent *e, int first, 
 static recede_status try_lattice(rc_context *context, rc_descent *e, int first, int count,
                                  rc_pace *p, rc_level *level, rc_workspace *scratch,
                                  double misfit) {
-  starts s = {first, first + count, first + count, NULL, 0};
+  rc_starts s = {first, first + count, first + count, NULL, 0};
   rc_trial best;
   double own;
   rc_chart chart = level->chart;
   RC_TRY(rc_trial_new(context, level, &best));
   level->lattice = e->lattice;
   if (e->params->surface != RECEDE_SURFACE_RAISED) level->chart = rc_chart_flat(chart);
-  RC_TRY(try_starts(context, e, &s, p, level, scratch, &best, &own));
+  RC_TRY(rc_try_starts(context, e, &s, p, level, scratch, &best, &own));
   e->on_lattice = own < FAVOUR_OF_LATTICE * misfit;
   if (!e->on_lattice) level->chart = chart, level->lattice = (rc_lattice){.spacing = 1};
   take_kinds(e, &level->chart);
@@ -350,18 +260,17 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
     if (kept) return RECEDE_OK;
   }
   int trials = plain + with_lines, whole = e->params->engine_whole ? with_lines / 2 : 0;
-  starts by_chance = {0, plain, plain, NULL, 0};
-  starts along_lines = {plain, trials - whole, trials, NULL, 0};
+  rc_starts by_chance = {0, plain, plain, NULL, 0};
+  rc_starts along_lines = {plain, trials - whole, trials, NULL, 0};
+  RC_TRY(rc_trial_new(context, level, &best));
   if (trials == 1 && !in_lattice && !on_rails) {
     rc_pace p = {0, iterations};
-    RC_TRY(start_once(context, e, &by_chance, 0, level));
-    return rc_iterate(context, e, exponent, 0, 0, iterations, &p, level, scratch);
+    return rc_try_starts(context, e, &by_chance, &p, level, scratch, &best, &misfit);
   }
-  rc_pace p = {0, work_of(plain, iterations) + work_of(with_lines, iterations) +
-                      work_of(in_lattice, iterations) + work_of(by_periods, iterations) +
-                      rails_tried * work_of(on_rails, iterations)};
-  RC_TRY(rc_trial_new(context, level, &best));
-  RC_TRY(try_starts(context, e, &by_chance, &p, level, scratch, &best, &misfit));
+  rc_pace p = {0, rc_work_of_starts(plain, iterations) + rc_work_of_starts(with_lines, iterations) +
+                      rc_work_of_starts(in_lattice, iterations) + rc_work_of_starts(by_periods, iterations) +
+                      rails_tried * rc_work_of_starts(on_rails, iterations)};
+  RC_TRY(rc_try_starts(context, e, &by_chance, &p, level, scratch, &best, &misfit));
   if (by_periods)
     RC_TRY(try_periods(context, e, trials, by_periods, &p, level, scratch, &best, &misfit));
   if (on_rails) RC_TRY(try_rails(context, e, trials, on_rails, &p, level, scratch, misfit));

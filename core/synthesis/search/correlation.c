@@ -3,11 +3,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/four.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/real.h"
-#include "synthesis/search/evaluate.h"
 
 /* Nearer ones are the texture's own correlation length. */
 #define LEAST_LAG_PX 3
@@ -15,40 +15,67 @@
 #define LEAST_SHARED .25
 #define LEAST_PEAK .12f
 
-typedef struct sums {
-  double n, a, b, aa, bb, ab;
-} sums;
+/* Displacements are asked four at a time, as vectors. */
+typedef double four_sums __attribute__((vector_size(4 * sizeof(double))));
 
-static void add_pair(sums *s, double a, double b) {
-  s->n++, s->a += a, s->b += b, s->aa += a * a, s->bb += b * b, s->ab += a * b;
+/* The points, as displacements are tried at them: relative to the chart's origin. */
+typedef struct probes {
+  const rc_correlation *c;
+  const float *x, *y, *w, *own;
+  const float *known; /* the trait of each pixel; NAN: no source */
+} probes;
+
+static double correlation_of(double n, double a, double b, double aa, double bb, double ab) {
+  double spread = (aa - a * a / n) * (bb - b * b / n);
+  return n > 0 && spread > 0 ? (ab - a * b / n) / sqrt(spread) : 0;
 }
 
-static double correlation_of(const sums *s) {
-  double spread = (s->aa - s->a * s->a / s->n) * (s->bb - s->b * s->b / s->n);
-  return s->n > 0 && spread > 0 ? (s->ab - s->a * s->b / s->n) / sqrt(spread) : 0;
+/* What the sources show that the displacements (dx .. dx + 3, dy) take a point to; NAN: none. */
+static rc_four taken(const probes *p, int i, rc_four dx, float dy) {
+  const rc_level *level = p->c->level;
+  const rc_chart *flat = &p->c->flat;
+  float w = p->w[i], x = p->x[i], y = p->y[i];
+  /* As rc_copy_place and rc_place_at. */
+  rc_four ratio = 1.f / (1.f - (flat->lx * dx + flat->ly * dy) * w);
+  rc_four to_x = (x + dx * w) * ratio + flat->x0 + .5f;
+  rc_four to_y = (y + dy * w) * ratio + flat->y0 + .5f;
+  rc_four_ints may = (ratio > .5f) & (ratio < 2.f) & (to_x >= 0.f) & (to_y >= 0.f) &
+                     (to_x < (float)level->width) & (to_y < (float)level->height);
+  rc_four_ints px = __builtin_convertvector(rc_select(may, to_x, (rc_four){0}), rc_four_ints);
+  rc_four_ints py = __builtin_convertvector(rc_select(may, to_y, (rc_four){0}), rc_four_ints);
+  rc_four value;
+  for (int k = 0; k < 4; k++)
+    value[k] = p->known[(size_t)py[k] * (size_t)level->width + (size_t)px[k]];
+  return rc_select(may, value, (rc_four){NAN, NAN, NAN, NAN});
 }
 
-static void correlate_lag(const rc_correlation *c, int dx, int dy, float *value) {
-  const rc_level *level = c->level;
-  rc_copy copy = {(float)dx, (float)dy, 0.f};
-  sums s = {0, 0, 0, 0, 0, 0};
-  for (int i = 0; i < c->count; i++) {
-    int x = c->points[i] % level->width, y = c->points[i] / level->width;
-    rc_place place = rc_copy_place(&c->flat, copy, rc_level_x(level, x), rc_level_y(level, y));
-    size_t at;
-    if (!(place.ratio > .5f && place.ratio < 2.f) || !rc_place_at(level, &place, &at)) continue;
-    if (!level->room[at]) continue;
-    add_pair(&s, (double)c->trait[c->points[i]], (double)c->trait[at]);
+static void correlate_four(const probes *p, int dx, int dy, float value[4]) {
+  four_sums n = {0}, a = {0}, b = {0}, aa = {0}, bb = {0}, ab = {0};
+  const rc_four by = {(float)dx, (float)(dx + 1), (float)(dx + 2), (float)(dx + 3)};
+  for (int i = 0; i < p->c->count; i++) {
+    rc_four to = taken(p, i, by, (float)dy), own = {p->own[i], p->own[i], p->own[i], p->own[i]};
+    rc_four_ints seen = to == to;
+    four_sums one = __builtin_convertvector(rc_select(seen, (rc_four){1, 1, 1, 1}, (rc_four){0}),
+                                            four_sums);
+    four_sums va = __builtin_convertvector(rc_select(seen, own, (rc_four){0}), four_sums);
+    four_sums vb = __builtin_convertvector(rc_select(seen, to, (rc_four){0}), four_sums);
+    n += one, a += va, b += vb, aa += va * va, bb += vb * vb, ab += va * vb;
   }
-  *value = s.n >= LEAST_SHARED * c->count ? (float)correlation_of(&s) : RC_NOT_KNOWN;
+  for (int k = 0; k < 4; k++)
+    value[k] = n[k] >= LEAST_SHARED * p->c->count
+                   ? (float)correlation_of(n[k], a[k], b[k], aa[k], bb[k], ab[k])
+                   : RC_NOT_KNOWN;
 }
 
 static void correlate_row(void *user, int dy, int thread) {
-  const rc_correlation *c = user;
-  int width = 2 * c->lag + 1;
+  const probes *p = user;
+  int lag = p->c->lag, width = 2 * lag + 1;
+  float *row = p->c->value + (size_t)dy * (size_t)width, value[4];
   (void)thread;
-  for (int dx = -c->lag; dx <= c->lag; dx++)
-    correlate_lag(c, dx, dy, c->value + (size_t)dy * (size_t)width + (size_t)(dx + c->lag));
+  for (int i = 0; i < width; i += 4) {
+    correlate_four(p, i - lag, dy, value);
+    for (int k = 0; k < 4 && i + k < width; k++) row[i + k] = value[k];
+  }
 }
 
 float rc_correlation_at(const rc_correlation *c, int dx, int dy) {
@@ -126,16 +153,39 @@ recede_status rc_correlation_new(rc_context *context, const rc_level *level, con
   return RECEDE_OK;
 }
 
+static recede_status see_points(rc_context *context, const rc_correlation *c, probes *p) {
+  const rc_level *level = c->level;
+  size_t pixels = (size_t)level->width * (size_t)level->height, count = (size_t)c->count;
+  float *known, *of;
+  RC_TRY(RC_NEW(context, pixels, &known));
+  RC_TRY(RC_NEW(context, 4 * count, &of));
+  for (size_t i = 0; i < pixels; i++) known[i] = level->room[i] ? c->trait[i] : NAN;
+  for (size_t i = 0; i < count; i++) {
+    float x = rc_level_x(level, c->points[i] % level->width);
+    float y = rc_level_y(level, c->points[i] / level->width);
+    of[i] = x, of[count + i] = y;
+    of[2 * count + i] = rc_level_w(level, x, y);
+    of[3 * count + i] = c->trait[c->points[i]];
+  }
+  *p = (probes){c, of, of + count, of + 2 * count, of + 3 * count, known};
+  return RECEDE_OK;
+}
+
 recede_status rc_correlate(rc_context *context, rc_correlation *c, int lag, rc_peak **peaks,
                            int *count) {
+  probes p;
   c->lag = lag;
   RC_TRY(RC_NEW(context, (lag + 1) * (2 * lag + 1), &c->value));
-  RC_TRY(rc_parallel(context, lag + 1, correlate_row, c));
+  RC_TRY(see_points(context, c, &p));
+  RC_TRY(rc_parallel(context, lag + 1, correlate_row, &p));
   return find_peaks(context, c, peaks, count);
 }
 
 double rc_correlation_variance(const rc_correlation *c) {
-  sums s = {0, 0, 0, 0, 0, 0};
-  for (int i = 0; i < c->count; i++) add_pair(&s, (double)c->trait[c->points[i]], 0);
-  return (s.aa - s.a * s.a / s.n) / s.n;
+  double sum = 0, square = 0, count = c->count;
+  for (int i = 0; i < c->count; i++) {
+    double own = (double)c->trait[c->points[i]];
+    sum += own, square += own * own;
+  }
+  return (square - sum * sum / count) / count;
 }

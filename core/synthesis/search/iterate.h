@@ -2,6 +2,8 @@
 #ifndef RECEDE_SYNTHESIS_SEARCH_ITERATE_H
 #define RECEDE_SYNTHESIS_SEARCH_ITERATE_H
 
+#include <stdatomic.h>
+
 #include "synthesis/search/descent.h"
 
 /* Scratch of a level. */
@@ -12,7 +14,8 @@ typedef struct rc_workspace {
 
 /* Iterations that a stage has done, of how many: its progress. */
 typedef struct rc_pace {
-  int done, total;
+  atomic_int done;
+  int total;
 } rc_pace;
 
 int rc_iterations_at(const rc_descent *e, int exponent);

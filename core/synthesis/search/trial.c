@@ -11,6 +11,8 @@
  * scored 82, the best of four 91, and the one this picks 86 to 87, with prices of .1 to .3. */
 #define PRICE_OF_CONTRAST .2
 #define MOST_SAMPLES 4096
+/* Lanes are copies of the coarsest level, .2 MB where a hole is as wide as long. */
+#define MOST_BYTES_OF_LANES (4 << 20)
 
 static int target_pixels(const rc_level *level) {
   int count = 0;
@@ -46,6 +48,37 @@ void rc_trial_restore(rc_level *level, const rc_trial *trial) {
       level->cost[rc_level_at(level, x, y)] = trial->cost[n];
       level->pixels[(size_t)y * (size_t)level->width + (size_t)x] = trial->guide[n++];
     }
+}
+
+static recede_status lane_new(rc_context *context, const rc_level *level, bool usage,
+                              rc_lane *lane) {
+  size_t pixels = (size_t)level->width * (size_t)level->height;
+  size_t box = (size_t)level->box_w * (size_t)level->box_h;
+  rc_level *own = &lane->level;
+  *lane = (rc_lane){*level, {NULL, NULL}};
+  RC_TRY(RC_NEW(context, pixels, &own->pixels));
+  RC_TRY(RC_NEW(context, pixels, &own->weight));
+  RC_TRY(RC_NEW(context, box, &own->field));
+  RC_TRY(RC_NEW(context, box, &own->cost));
+  RC_TRY(RC_NEW(context, box, &lane->scratch.old));
+  if (usage) RC_TRY(RC_NEW(context, pixels, &lane->scratch.usage));
+  memcpy(own->pixels, level->pixels, pixels * sizeof *own->pixels);
+  memcpy(own->weight, level->weight, pixels * sizeof *own->weight);
+  memcpy(own->field, level->field, box * sizeof *own->field);
+  memcpy(own->cost, level->cost, box * sizeof *own->cost);
+  return RECEDE_OK;
+}
+
+recede_status rc_lanes_new(rc_context *context, const rc_level *level, const rc_workspace *scratch,
+                           int trials, rc_lane **lanes, int *count) {
+  size_t bytes = (size_t)level->width * (size_t)level->height * (4 + 1 + 4) +
+                 (size_t)level->box_w * (size_t)level->box_h * (2 * sizeof(rc_copy) + 4);
+  *count = context->threads < trials ? context->threads : trials;
+  while (*count > 1 && (size_t)*count * bytes > MOST_BYTES_OF_LANES) (*count)--;
+  RC_TRY(RC_NEW(context, *count, lanes));
+  for (int n = 0; n < *count; n++)
+    RC_TRY(lane_new(context, level, scratch->usage != NULL, &(*lanes)[n]));
+  return RECEDE_OK;
 }
 
 int rc_trials_worth(const rc_level *level, int most) {

@@ -3,7 +3,7 @@
 #ifndef RECEDE_SYNTHESIS_SEARCH_TRIAL_H
 #define RECEDE_SYNTHESIS_SEARCH_TRIAL_H
 
-#include "synthesis/search/level.h"
+#include "synthesis/search/iterate.h"
 
 /* What a start leaves in a level, target pixel by target pixel. */
 typedef struct rc_trial {
@@ -15,6 +15,15 @@ typedef struct rc_trial {
 recede_status rc_trial_new(rc_context *context, const rc_level *level, rc_trial *trial);
 void rc_trial_save(const rc_level *level, rc_trial *trial);
 void rc_trial_restore(rc_level *level, const rc_trial *trial);
+/* A level that is tried apart from the one it is like, and scratch of its own. */
+typedef struct rc_lane {
+  rc_level level;
+  rc_workspace scratch;
+} rc_lane;
+
+/* In how many lanes so many trials can be run beside each other, and these. */
+recede_status rc_lanes_new(rc_context *context, const rc_level *level, const rc_workspace *scratch,
+                           int trials, rc_lane **lanes, int *count);
 /* How many starts of so many are worth their time in this level. */
 int rc_trials_worth(const rc_level *level, int most);
 /* What is wrong with the level's guide, in variances; less is better. */

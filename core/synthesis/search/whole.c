@@ -138,15 +138,28 @@ static void label(const whole *w, int x, int y) {
   }
 }
 
+/* What is locked has its copy. */
+static void show_locked(const rc_level *level, int x, int y) {
+  size_t at = rc_level_at(level, x, y);
+  uint32_t pixel;
+  rc_place place =
+      rc_copy_place(&level->chart, level->field[at], rc_level_x(level, x), rc_level_y(level, y));
+  if (rc_place_field_pixel(level, &place, at, &pixel))
+    level->pixels[(size_t)y * (size_t)level->width + (size_t)x] = pixel;
+}
+
 static void label_row(void *user, int row, int thread) {
   const whole *w = user;
   const rc_level *level = w->level;
   int y = level->box.y0 + row;
   (void)thread;
-  for (int x = level->box.x0; x < level->box.x1; x++)
-    if (rc_level_is_target(level, x, y) &&
-        !(level->locked && level->locked[rc_level_at(level, x, y)]))
+  for (int x = level->box.x0; x < level->box.x1; x++) {
+    if (!rc_level_is_target(level, x, y)) continue;
+    if (level->locked && level->locked[rc_level_at(level, x, y)])
+      show_locked(level, x, y);
+    else
       label(w, x, y);
+  }
 }
 
 /* Copies that take the hole's centroid, which is on the plane as all of the hole is, to a source.

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/real.h"
 #include "synthesis/structure/alone.h"
 #include "synthesis/structure/follow.h"
@@ -192,24 +193,54 @@ void rc_lines_pair_up(const rc_ends *ends, float least_strength, rc_crossing lin
   }
 }
 
+/* Lines that are followed beside each other. */
+typedef struct followed {
+  const rc_seen *seen;
+  const rc_chart *chart;
+  bool by_itself; /* in as many windows as one must go on in that no other vouches for */
+  const rc_crossing *from;
+  rc_crossing to[RC_MOST_LINES];
+  bool found[RC_MOST_LINES];
+} followed;
+
+static void follow_one(void *user, int i, int thread) {
+  followed *f = user;
+  rc_crossing *c = &f->to[i];
+  (void)thread;
+  *c = f->from[i];
+  f->found[i] = rc_follow(f->seen, f->chart, f->by_itself ? rc_windows_of(c, false) : 0, c);
+}
+
+/* Whether one goes on by itself. */
+static recede_status find_one(rc_context *context, followed *f, int count, bool *found) {
+  const rc_crossing *first = f->from;
+  f->by_itself = true;
+  *found = false;
+  for (int at = 0; at < count && !*found; at += context->threads) {
+    int some = count - at < context->threads ? count - at : context->threads;
+    f->from = first + at;
+    RC_TRY(rc_parallel(context, some, follow_one, f));
+    for (int i = 0; i < some; i++) *found = *found || f->found[i];
+  }
+  f->from = first, f->by_itself = false;
+  return RECEDE_OK;
+}
+
 /* Keeps what can be continued, in px of the finest level. One must go on by itself, and vouches for
  * those parallel to it. */
 static recede_status follow(rc_context *context, const rc_seen *seen, const rc_chart *chart,
                             int exponent, rc_crossing lines[RC_MOST_LINES], int *count) {
+  followed f = {.seen = seen, .chart = chart, .from = lines};
   int kept = 0;
-  bool alone = true;
-  for (int i = 0; i < *count && alone; i++) {
-    rc_crossing c = lines[i];
-    RC_TRY(rc_poll(context));
-    alone = !rc_follow(seen, chart, rc_windows_of(&c, false), &c);
-  }
-  for (int i = 0; i < *count && !alone; i++) {
-    rc_crossing c = lines[i];
-    RC_TRY(rc_poll(context));
-    if (!rc_follow(seen, chart, 0, &c)) continue;
-    rc_crossing_tell_band(&c, false);
-    rc_crossing_forget_chance(&c);
-    lines[kept++] = rc_crossing_coarser(c, -exponent);
+  bool found;
+  RC_TRY(find_one(context, &f, *count, &found));
+  if (found) RC_TRY(rc_parallel(context, *count, follow_one, &f));
+  for (int i = 0; i < *count && found; i++) {
+    rc_crossing *c = &f.to[i];
+    if (!f.found[i]) continue;
+    rc_crossing_tell_band(c, false);
+    rc_crossing_forget_chance(c);
+    lines[kept++] = rc_crossing_coarser(*c, -exponent);
   }
   *count = kept;
   return RECEDE_OK;

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "synthesis/structure/moves.h"
 
 /* A texture repeats if, moved along by so many px of the coarsest level, it changes by less than
@@ -52,25 +53,47 @@ static bool comes_again_at(const changes *c, int px, double least) {
   return true;
 }
 
-static bool comes_again(const rc_moves *m, float a, float b, changes *c) {
+static bool comes_again(const rc_moves *m, float a, float b, const changes *c) {
   double least = LEAST_BETWEEN * rc_moves_across(m, a, b, ACROSS_PX);
-  for (int px = LEAST_PERIOD_PX / 2; px <= FARTHEST_PX; px++)
-    for (int i = 0; i < m->count; i++) {
-      float by = (float)px;
-      c->of[px][i] = rc_moves_change_of(m, i, by * a, by * b);
-      c->of[px][m->count + i] = rc_moves_change_of(m, i, -by * a, -by * b);
-    }
   for (int px = LEAST_PERIOD_PX; px <= MOST_PERIOD_PX; px++)
     if (comes_again_at(c, px, least)) return true;
   return false;
 }
 
+/* Moved along (a, b). */
+typedef struct looking {
+  const rc_moves *moves;
+  float a, b;
+  changes *c;
+} looking;
+
+static void look(void *user, int item, int thread) {
+  const looking *l = user;
+  int px = LEAST_PERIOD_PX / 2 + item, count = l->moves->count;
+  float a = (float)px * l->a, b = (float)px * l->b, *of = l->c->of[px];
+  (void)thread;
+  for (int i = 0; i < count; i++) {
+    of[i] = rc_moves_change_of(l->moves, i, a, b);
+    of[count + i] = rc_moves_change_of(l->moves, i, -a, -b);
+  }
+}
+
+/* No point counts more. */
+static void limit(float most, changes *c) {
+  for (int px = LEAST_PERIOD_PX / 2; px <= FARTHEST_PX; px++)
+    for (int i = 0; i < c->count; i++)
+      if (c->of[px][i] > most) c->of[px][i] = most;
+}
+
 static recede_status repeats(rc_context *context, rc_moves *m, float a, float b, bool *result) {
   changes c = {.count = 2 * m->count};
+  looking l = {m, a, b, &c};
   for (int px = LEAST_PERIOD_PX / 2; px <= FARTHEST_PX; px++)
     RC_TRY(RC_NEW(context, c.count, &c.of[px]));
+  RC_TRY(rc_parallel(context, FARTHEST_PX + 1 - LEAST_PERIOD_PX / 2, look, &l));
   *result = comes_again(m, a, b, &c);
   m->most_change = rc_moves_usual_change(m);
+  if (*result) limit((float)m->most_change, &c);
   *result = *result && comes_again(m, a, b, &c);
   return rc_poll(context);
 }

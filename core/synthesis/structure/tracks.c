@@ -20,6 +20,9 @@
 #define LEAST_APART 4.f
 #define LEAST_ALIKE .5
 #define LEAST_ALIKE_ACROSS .6
+/* Directions that are asked, and then around the best of them. */
+#define DIRECTIONS 60
+#define AROUND 5
 /* Broad as they are, every second cell tells enough. */
 #define STRIDE 2
 /* From so few pairs a correlation says nothing. */
@@ -125,28 +128,49 @@ static void correlate_along(const rc_plan *tone, const rc_plan *hole, float a, f
   correlate(tone, hole, (int)rc_round(a * apart), (int)rc_round(b * apart), c);
 }
 
-/* How alike is what lies along a direction: so much of the hole's length apart, anywhere, and on
- * both sides of the hole. */
-static void ask_direction(const rc_plan *tone, const rc_plan *hole, double cells, float a, float b,
-                          rc_tracks *tracks) {
-  correlation all = {.pairs = 0}, across = {.pairs = 0};
-  float length = length_of(hole, a, b);
-  correlate_along(tone, NULL, a, b, APART * length + LEAST_APART, &all);
-  if (PAIRS_OF_HOLE * STRIDE * STRIDE * all.pairs < cells) return;
-  for (int quarters = 4; quarters <= 6; quarters++)
-    correlate_along(tone, hole, a, b, length * (float)quarters / 4, &across);
-  float alike = (float)value_of(&all), alike_across = (float)value_of(&across);
-  if (alike + alike_across <= tracks->alike + tracks->across) return;
-  tracks->alike = alike, tracks->across = alike_across;
-  tracks->tone.a = a, tracks->tone.b = b;
-}
-
 typedef struct direction {
   double a, b;
+  float alike, across;
 } direction;
 
 static direction turned(direction d, double cosine, double sine) {
-  return (direction){d.a * cosine - d.b * sine, d.a * sine + d.b * cosine};
+  return (direction){d.a * cosine - d.b * sine, d.a * sine + d.b * cosine, 0, 0};
+}
+
+typedef struct asking {
+  const rc_plan *tone, *hole;
+  double cells;
+  direction directions[DIRECTIONS];
+} asking;
+
+/* How alike is what lies along a direction: so much of the hole's length apart, anywhere, and on
+ * both sides of the hole. */
+static void ask_direction(void *user, int item, int thread) {
+  asking *s = user;
+  direction *d = &s->directions[item];
+  float a = (float)d->a, b = (float)d->b, length = length_of(s->hole, a, b);
+  correlation all = {.pairs = 0}, across = {.pairs = 0};
+  (void)thread;
+  d->alike = d->across = 0;
+  correlate_along(s->tone, NULL, a, b, APART * length + LEAST_APART, &all);
+  if (PAIRS_OF_HOLE * STRIDE * STRIDE * all.pairs < s->cells) return;
+  for (int quarters = 4; quarters <= 6; quarters++)
+    correlate_along(s->tone, s->hole, a, b, length * (float)quarters / 4, &across);
+  d->alike = (float)value_of(&all), d->across = (float)value_of(&across);
+}
+
+/* The best of so many, each turned by as much. */
+static recede_status ask_directions(rc_context *context, asking *s, direction first, double cosine,
+                                    double sine, int count, rc_tracks *tracks) {
+  for (int i = 0; i < count; i++, first = turned(first, cosine, sine)) s->directions[i] = first;
+  RC_TRY(rc_parallel(context, count, ask_direction, s));
+  for (int i = 0; i < count; i++) {
+    const direction *d = &s->directions[i];
+    if (d->alike + d->across <= tracks->alike + tracks->across) continue;
+    tracks->alike = d->alike, tracks->across = d->across;
+    tracks->tone.a = (float)d->a, tracks->tone.b = (float)d->b;
+  }
+  return RECEDE_OK;
 }
 
 /* The direction along which the tone stays most the same: all, 3 degrees apart, then around the
@@ -155,18 +179,12 @@ static recede_status find_direction(rc_context *context, const rc_plan *tone, co
                                     rc_tracks *tracks) {
   const double c3 = .99862953475457387, s3 = .052335956242943833; /* of 3 degrees */
   const double c1 = .99984769515639127, s1 = .017452406437283512; /* of 1 */
-  direction d = {1, 0};
-  double cells = 0;
-  for (int i = 0; i < RC_PLAN_CELLS; i++) cells += hole->sums[i] > 0.f ? 1 : 0;
-  for (int i = 0; i < 60; i++, d = turned(d, c3, s3)) {
-    ask_direction(tone, hole, cells, (float)d.a, (float)d.b, tracks);
-    RC_TRY(rc_poll(context));
-  }
-  d = (direction){(double)tracks->tone.a, (double)tracks->tone.b};
-  d = turned(turned(d, c1, -s1), c1, -s1);
-  for (int i = -2; i <= 2; i++, d = turned(d, c1, s1))
-    ask_direction(tone, hole, cells, (float)d.a, (float)d.b, tracks);
-  return rc_poll(context);
+  asking s = {.tone = tone, .hole = hole};
+  for (int i = 0; i < RC_PLAN_CELLS; i++) s.cells += hole->sums[i] > 0.f ? 1 : 0;
+  RC_TRY(ask_directions(context, &s, (direction){1, 0, 0, 0}, c3, s3, DIRECTIONS, tracks));
+  direction best = {(double)tracks->tone.a, (double)tracks->tone.b, 0, 0};
+  best = turned(turned(best, c1, -s1), c1, -s1);
+  return ask_directions(context, &s, best, c1, s1, AROUND, tracks);
 }
 
 static double strength_of(const rc_plan *tone) {
