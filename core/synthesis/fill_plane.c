@@ -16,6 +16,7 @@
 #include "synthesis/kinds.h"
 #include "synthesis/search/descent.h"
 #include "synthesis/search/effort.h"
+#include "synthesis/search/gain.h"
 #include "synthesis/search/lock.h"
 #include "synthesis/search/regular.h"
 #include "synthesis/search/rest.h"
@@ -44,8 +45,6 @@
 #define SCALES_BESIDE 1.3
 /* The drift is measured again where such a part of the sources was something else. */
 #define MUCH_TAKEN .05
-/* Bytes span this many standard deviations to each side. */
-#define DEVIATIONS 4.f
 
 static rc_chart chart_of(const rc_problem *problem, bool raised) {
   const rc_line *line = &problem->line;
@@ -88,21 +87,6 @@ static recede_status build_pyramid(rc_context *context, const rc_problem *proble
                    &e->flags[last + 1]));
     e->level_count++;
   }
-}
-
-static float byte_gain(const rc_image *residual, const rc_mask *flags) {
-  double square = 0, count = 0;
-  size_t channels = (size_t)residual->channels;
-  for (size_t i = 0; i < (size_t)residual->width * (size_t)residual->height; i++) {
-    if (!(flags->data[i] & RC_SOURCE)) continue;
-    for (size_t k = 0; k < channels; k++) {
-      double v = residual->data[i * channels + k];
-      square += v * v;
-    }
-    count += (double)channels;
-  }
-  double deviation = count > 0 ? sqrt(square / count) : 0;
-  return deviation > 1e-9 ? (float)(127 / (DEVIATIONS * deviation)) : 1.f;
 }
 
 static void drop_new_dashes(const rc_dash_rows *dashes, int before, rc_descent *e) {
@@ -176,12 +160,13 @@ static recede_status find_dashes(rc_context *context, const rc_problem *problem,
 static recede_status find_due(rc_context *context, const rc_problem *problem, rc_descent *e) {
   rc_chart flat = chart_of(problem, false);
   const recede_params *params = e->params;
+  float gain;
   /* Moves by periods lie flat. */
   if (!params->engine_regular || !params->engine_periods ||
       params->surface == RECEDE_SURFACE_RAISED)
     return RECEDE_OK;
-  RC_TRY(rc_periods_of_all(context, e->images, e->flags, e->level_count, &flat,
-                           byte_gain(&e->images[0], &problem->flags),
+  RC_TRY(rc_find_gain(context, &e->images[0], &problem->flags, &gain));
+  RC_TRY(rc_periods_of_all(context, e->images, e->flags, e->level_count, &flat, gain,
                            rc_key((uint64_t)e->params->seed, 95, 0), &e->of_all));
   e->due = e->of_all.due;
   return RECEDE_OK;
@@ -327,7 +312,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
   RC_TRY(find_due(context, problem, &e));
   if (params->engine_alike && !problem->synthesis && !e.due)
     RC_TRY(keep_alike(context, problem, &band, &tone, filled, pyramid, &e));
-  e.gain = byte_gain(filled, &problem->flags);
+  RC_TRY(rc_find_gain(context, filled, &problem->flags, &e.gain));
   /* Again, for it is the texture's that counts; what is alike may be too little to tell. */
   RC_TRY(rc_choose_surface(context, problem, e.images, e.flags, e.level_count, params->surface,
                            &raised));
@@ -350,7 +335,7 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
    * price on light would only leave fewer sources. */
   bool frontal = problem->line.a == 0 && problem->line.b == 0;
   RC_TRY(rc_conditions_find(context, e.images, e.flags, e.level_count, &tone,
-                            127 / (DEVIATIONS * e.gain), params->engine_focus,
+                            127 / (RC_GAIN_DEVIATIONS * e.gain), params->engine_focus,
                             params->engine_kin && !problem->synthesis && !e.due,
                             params->engine_light && frontal, &e.conditions));
   if (params->engine_layers && frontal && !problem->synthesis && !e.due)

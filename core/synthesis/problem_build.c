@@ -116,10 +116,11 @@ static void read_row(void *user, int y, int thread) {
   rc_view_read(r->views->image, problem->origin_x, problem->origin_y + y, width, values);
   r->nonfinite[y] = rc_classify_row(r->views, problem->origin_x, problem->origin_y + y, width,
                                     values, scratch, flags);
+  /* What is not known is written, too: a page that was read first, as 0, would cost the write that
+   * fills it a fault that all threads wait for. */
   for (int x = 0; x < width; x++)
-    if (flags[x] & RC_KNOWN)
-      memcpy(rc_pixel(&problem->image, x, y), values + (size_t)x * (size_t)channels,
-             (size_t)colours * sizeof(float));
+    for (int k = 0; k < colours; k++)
+      rc_pixel(&problem->image, x, y)[k] = flags[x] & RC_KNOWN ? values[x * channels + k] : 0.f;
 }
 
 static recede_status read_pixels(rc_context *context, const rc_views *views, rc_problem *problem) {

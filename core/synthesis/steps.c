@@ -60,6 +60,50 @@ static uint8_t bin_of(const rc_line *line, int x, int y) {
   return (uint8_t)(bin < 0 ? 0 : bin < BINS ? bin : BINS - 1);
 }
 
+/* Of a problem, before there are bins of each pixel. */
+typedef struct tallying {
+  const rc_problem *problem;
+  tally *of_thread;
+} tallying;
+
+/* So many pixels of a row at once: w only grows along it, or only falls. */
+#define COLUMNS 64
+
+static void tally_row(void *user, int y, int thread) {
+  const tallying *c = user;
+  const rc_line *line = &c->problem->line;
+  const uint8_t *flags = rc_flag(&c->problem->flags, 0, y);
+  tally *t = &c->of_thread[thread];
+  int width = c->problem->flags.width;
+  for (int first = 0; first < width; first += COLUMNS) {
+    int end = first + COLUMNS < width ? first + COLUMNS : width, targets = 0, sources = 0;
+    uint8_t bin = bin_of(line, first, y);
+    bool same = bin == bin_of(line, end - 1, y);
+    for (int x = first; x < end && same; x++)
+      targets += (flags[x] & RC_TARGET) != 0, sources += (flags[x] & RC_SOURCE) != 0;
+    t->target[bin] += (uint64_t)targets, t->source[bin] += (uint64_t)sources;
+    for (int x = first; x < end && !same; x++) {
+      bin = bin_of(line, x, y);
+      t->target[bin] += (flags[x] & RC_TARGET) != 0, t->source[bin] += (flags[x] & RC_SOURCE) != 0;
+    }
+  }
+}
+
+static recede_status tally_all(rc_context *context, const rc_problem *problem, tally *t) {
+  tallying c = {.problem = problem};
+  rc_block *mark = rc_mark(context);
+  RC_TRY(RC_NEW_ZERO(context, context->threads, &c.of_thread));
+  RC_TRY(rc_parallel(context, problem->flags.height, tally_row, &c));
+  memset(t, 0, sizeof *t);
+  for (int n = 0; n < context->threads; n++)
+    for (int i = 0; i < BINS; i++) {
+      t->target[i] += c.of_thread[n].target[i];
+      t->source[i] += c.of_thread[n].source[i];
+    }
+  rc_release(context, mark);
+  return RECEDE_OK;
+}
+
 static void sort_row(void *user, int y, int thread) {
   steps *s = user;
   (void)thread;
@@ -245,6 +289,8 @@ static void share_of_step(rc_context *context, const steps *s, uint64_t pixels) 
 static recede_status fill_rest(rc_context *context, steps *s) {
   static const bool none[BINS];
   tally t;
+  RC_TRY(rc_mask_new(context, s->flags.width, s->flags.height, &s->bins));
+  RC_TRY(rc_parallel(context, s->flags.height, sort_row, s));
   RC_TRY(rc_mask_new(context, s->flags.width, s->flags.height, &s->flags));
   memcpy(s->flags.data, s->problem->flags.data, (size_t)s->flags.width * (size_t)s->flags.height);
   s->shortfall.continued = s->shortfall.missing = 0;
@@ -294,9 +340,7 @@ recede_status rc_fill_in_steps(rc_context *context, const rc_problem *problem,
   bool frontal = problem->line.a == 0 && problem->line.b == 0;
   tally t;
   RC_TRY(RC_NEW_ZERO(context, (size_t)width * (size_t)height, &s.shortfall.rest));
-  RC_TRY(rc_mask_new(context, width, height, &s.bins));
-  RC_TRY(rc_parallel(context, height, sort_row, &s));
-  count(&s, &t);
+  RC_TRY(tally_all(context, problem, &t));
   s.targets = sum(t.target, 0, BINS);
   double least = LEAST_REST * (double)s.targets;
   bool far = params->engine_steps && !frontal && (double)sum(t.target, 0, farthest(&t)) >= least;

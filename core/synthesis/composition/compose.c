@@ -35,10 +35,10 @@
 #define TAPS_ROUND .4f
 #define MOST_TAPS 8
 
-typedef struct row_sums {
-  double change, changes; /* of squares; how many */
-  double miss, misses;
-} row_sums;
+/* Of a row: squares, and how many. */
+typedef struct row_changes {
+  double sum, count;
+} row_changes;
 
 typedef struct composition {
   const rc_level *level;
@@ -49,10 +49,11 @@ typedef struct composition {
   float *value;       /* the copies' own values, box by channels */
   rc_relaxation join; /* what it adds to the values */
   rc_misses misses;
+  int32_t *border; /* indices of the box's pixels that touch known ones, in order */
+  int border_count;
   float mean_change; /* square between neighbours, sum over channels */
-  float mean_miss;   /* how far copies are from the known pixels beside them, a distance, */
-  float most_miss;   /* of those that are no farther than this */
-  row_sums *sums;
+  float mean_miss;   /* how far copies are from the known pixels beside them, a distance */
+  row_changes *changes;
 } composition;
 
 static const int step_x[4] = {-1, 1, 0, 0}, step_y[4] = {0, 0, -1, 1};
@@ -133,19 +134,11 @@ static float square_of(const composition *c, const float *miss) {
   return square;
 }
 
-static void sum_misses(const composition *c, int x, int y, row_sums *sums) {
-  float there[3], miss[3];
-  for (int e = 0; e < 4; e++) {
-    if (!miss_at(c, x, y, e, there, miss)) continue;
-    double distance = sqrt((double)square_of(c, miss));
-    if (distance <= (double)c->most_miss) sums->miss += distance, sums->misses++;
-  }
-}
-
+/* Between targets, to the right and below. */
 static void sum_row(void *user, int item, int thread) {
   const composition *c = user;
   const rc_level *level = c->level;
-  row_sums sums = {0, 0, 0, 0};
+  row_changes sums = {0, 0};
   int y = level->box.y0 + item;
   (void)thread;
   for (int x = level->box.x0; x < level->box.x1; x++) {
@@ -153,31 +146,67 @@ static void sum_row(void *user, int item, int thread) {
     const float *value = c->value + rc_level_at(level, x, y) * (size_t)c->channels;
     const float *below = value + (size_t)level->box_w * (size_t)c->channels;
     if (x + 1 < level->box.x1 && rc_level_is_target(level, x + 1, y))
-      sums.change += (double)change(c, value, value + c->channels), sums.changes++;
+      sums.sum += (double)change(c, value, value + c->channels), sums.count++;
     if (y + 1 < level->box.y1 && rc_level_is_target(level, x, y + 1))
-      sums.change += (double)change(c, value, below), sums.changes++;
-    sum_misses(c, x, y, &sums);
+      sums.sum += (double)change(c, value, below), sums.count++;
   }
-  c->sums[item] = sums;
+  c->changes[item] = sums;
 }
 
-static recede_status set_means_of(rc_context *context, composition *c, float most_miss) {
-  row_sums all = {0, 0, 0, 0};
-  c->most_miss = most_miss;
+static recede_status set_mean_change(rc_context *context, composition *c) {
+  double sum = 0, count = 0;
+  RC_TRY(RC_NEW(context, c->level->box_h, &c->changes));
   RC_TRY(rc_parallel(context, c->level->box_h, sum_row, c));
-  for (int row = 0; row < c->level->box_h; row++) {
-    all.change += c->sums[row].change, all.changes += c->sums[row].changes;
-    all.miss += c->sums[row].miss, all.misses += c->sums[row].misses;
-  }
-  c->mean_change = all.changes > 0 ? (float)(all.change / all.changes) : 0.f;
-  c->mean_miss = all.misses > 0 ? (float)(all.miss / all.misses) : 0.f;
+  for (int row = 0; row < c->level->box_h; row++)
+    sum += c->changes[row].sum, count += c->changes[row].count;
+  c->mean_change = count > 0 ? (float)(sum / count) : 0.f;
   return RECEDE_OK;
 }
 
-static recede_status set_means(rc_context *context, composition *c) {
-  RC_TRY(RC_NEW(context, c->level->box_h, &c->sums));
-  RC_TRY(set_means_of(context, c, INFINITY));
-  return set_means_of(context, c, THINGS_MISS_BY * c->mean_miss);
+static bool touches_known(const composition *c, int x, int y) {
+  for (int e = 0; e < 4; e++)
+    if (is_fixed(c->level, x + step_x[e], y + step_y[e])) return rc_level_is_target(c->level, x, y);
+  return false;
+}
+
+static recede_status collect_border(rc_context *context, composition *c) {
+  const rc_box *box = &c->level->box;
+  for (int filling = 0; filling < 2; filling++) {
+    c->border_count = 0;
+    for (int y = box->y0; y < box->y1; y++) {
+      for (int x = box->x0; x < box->x1; x++) {
+        if (!touches_known(c, x, y)) continue;
+        if (filling) c->border[c->border_count] = (int32_t)rc_level_at(c->level, x, y);
+        c->border_count++;
+      }
+      RC_TRY(rc_poll(context));
+    }
+    if (!filling) RC_TRY(RC_NEW(context, c->border_count + 1, &c->border));
+  }
+  return RECEDE_OK;
+}
+
+static void border_at(const composition *c, int i, int *x, int *y) {
+  *x = c->level->box.x0 + c->border[i] % c->level->box_w;
+  *y = c->level->box.y0 + c->border[i] / c->level->box_w;
+}
+
+/* Of those that are no more than most. */
+static recede_status set_mean_miss(rc_context *context, float most, composition *c) {
+  double sum = 0, count = 0;
+  for (int i = 0; i < c->border_count; i++) {
+    float there[3], miss[3];
+    int x, y;
+    if (i % RC_POLLED_PX == 0) RC_TRY(rc_poll(context));
+    border_at(c, i, &x, &y);
+    for (int e = 0; e < 4; e++) {
+      if (!miss_at(c, x, y, e, there, miss)) continue;
+      double distance = sqrt((double)square_of(c, miss));
+      if (distance <= (double)most) sum += distance, count++;
+    }
+  }
+  c->mean_miss = count > 0 ? (float)(sum / count) : 0.f;
+  return RECEDE_OK;
 }
 
 /* Of the edge between two pixels of one copy. */
@@ -295,49 +324,20 @@ static void correct_row(void *user, int item, int thread) {
   }
 }
 
-static bool touches_known(const composition *c, int x, int y) {
-  for (int e = 0; e < 4; e++)
-    if (is_fixed(c->level, x + step_x[e], y + step_y[e])) return rc_level_is_target(c->level, x, y);
-  return false;
-}
-
-/* Indices of the box's pixels that touch known ones, in order; border NULL: only how many. */
-static recede_status collect_border(rc_context *context, const composition *c, int32_t *border,
-                                    int *count) {
-  const rc_box *box = &c->level->box;
-  *count = 0;
-  for (int y = box->y0; y < box->y1; y++) {
-    for (int x = box->x0; x < box->x1; x++) {
-      if (!touches_known(c, x, y)) continue;
-      if (border) border[*count] = (int32_t)rc_level_at(c->level, x, y);
-      ++*count;
-    }
-    RC_TRY(rc_poll(context));
-  }
-  return RECEDE_OK;
-}
-
 static recede_status find_tone_of_misses(rc_context *context, composition *c) {
-  const rc_level *level = c->level;
   float there[3], miss[3];
-  int32_t *border;
-  int count;
-  RC_TRY(rc_misses_new(context, level->box, c->channels, c->mean_miss, &c->misses));
-  RC_TRY(collect_border(context, c, NULL, &count));
-  RC_TRY(RC_NEW(context, count + 1, &border));
-  RC_TRY(collect_border(context, c, border, &count));
+  int x, y;
+  RC_TRY(rc_misses_new(context, c->level->box, c->channels, c->mean_miss, &c->misses));
   for (int round = 0; round < RC_MISS_ROUNDS; round++) {
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < c->border_count; i++) {
       if (i % RC_POLLED_PX == 0) RC_TRY(rc_poll(context));
-      int x = level->box.x0 + border[i] % level->box_w,
-          y = level->box.y0 + border[i] / level->box_w;
+      border_at(c, i, &x, &y);
       for (int e = 0; e < 4; e++)
         if (miss_at(c, x, y, e, there, miss)) rc_misses_add(&c->misses, x, y, miss);
     }
     rc_misses_settle(&c->misses);
     RC_TRY(rc_poll(context));
   }
-  RC_FREE(context, &border);
   return RECEDE_OK;
 }
 
@@ -346,7 +346,10 @@ static recede_status solve_join(rc_context *context, const rc_join *join, compos
   float of_hole = REACH_OF_HOLE * (float)(rows < columns ? rows : columns);
   float reach_px = fminf(join->reach_px, fmaxf(of_hole, LEAST_REACH_PX));
   RC_TRY(rc_relaxation_new(context, columns, rows, c->channels, &c->join));
-  RC_TRY(set_means(context, c));
+  RC_TRY(collect_border(context, c));
+  RC_TRY(set_mean_change(context, c));
+  RC_TRY(set_mean_miss(context, INFINITY, c));
+  RC_TRY(set_mean_miss(context, THINGS_MISS_BY * c->mean_miss, c));
   RC_TRY(find_tone_of_misses(context, c));
   RC_TRY(rc_parallel(context, rows, drive_row, c));
   RC_TRY(rc_relax(context, reach_px, join->sweeps, &c->join));

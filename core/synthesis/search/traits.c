@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/eigen.h"
+#include "base/four.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/random.h"
@@ -140,7 +141,7 @@ typedef struct projection {
   int inputs;
   double mean[MOST_INPUTS], covariance[MOST_INPUTS * MOST_INPUTS];
   /* A component's byte is the sum of the inputs, each times its weight, and the offset. */
-  float weights[MOST_INPUTS][RC_COMPONENTS], offset[RC_COMPONENTS];
+  rc_four weights[MOST_INPUTS], offset;
   rc_traits *traits;
 } projection;
 
@@ -226,16 +227,17 @@ static void project_row(void *user, int row, int thread) {
   const projection *p = user;
   int y = p->box.y0 + row;
   uint32_t *pixels = p->traits->pixels + (size_t)y * (size_t)p->image->width;
+  const rc_four least = {0.f}, most = {255.f, 255.f, 255.f, 255.f};
   float inputs[MOST_INPUTS];
   (void)thread;
   for (int x = p->box.x0; x < p->box.x1; x++) {
-    float bytes[RC_COMPONENTS];
+    rc_four bytes = p->offset;
     inputs_at(p, x, y, inputs);
-    memcpy(bytes, p->offset, sizeof bytes);
-    for (int i = 0; i < p->inputs; i++)
-      for (int k = 0; k < RC_COMPONENTS; k++) bytes[k] += p->weights[i][k] * inputs[i];
-    for (int k = 0; k < RC_COMPONENTS; k++)
-      pixels[x] |= (uint32_t)(bytes[k] > 0.f ? bytes[k] < 255.f ? bytes[k] : 255.f : 0.f) << 8 * k;
+    for (int i = 0; i < p->inputs; i++) bytes += p->weights[i] * inputs[i];
+    bytes = rc_select(bytes > least, bytes, least);
+    bytes = rc_select(bytes < most, bytes, most);
+    rc_four_words whole = (rc_four_words)__builtin_convertvector(bytes, rc_four_ints);
+    pixels[x] = whole[0] | whole[1] << 8 | whole[2] << 16 | whole[3] << 24;
   }
 }
 
