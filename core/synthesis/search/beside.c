@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/random.h"
 #include "synthesis/search/evaluate.h"
 
@@ -110,6 +111,30 @@ static bool wants(const beside *b, int x, int y) {
   return isnan(copy.a) || place_of(level, copy, x, y).ratio > FINER;
 }
 
+typedef struct wanting {
+  const beside *b;
+  int *rows; /* how many of each */
+} wanting;
+
+static void count_row(void *user, int row, int thread) {
+  const wanting *w = user;
+  const rc_level *level = w->b->level;
+  (void)thread;
+  w->rows[row] = 0;
+  for (int x = level->box.x0; x < level->box.x1; x++)
+    w->rows[row] += wants(w->b, x, level->box.y0 + row);
+}
+
+static recede_status any_wants(rc_context *context, const beside *b, bool *any) {
+  wanting w = {.b = b};
+  RC_TRY(RC_NEW(context, b->level->box_h, &w.rows));
+  RC_TRY(rc_parallel(context, b->level->box_h, count_row, &w));
+  *any = false;
+  for (int row = 0; row < b->level->box_h; row++) *any = *any || w.rows[row];
+  RC_FREE(context, &w.rows);
+  return RECEDE_OK;
+}
+
 /* The search asks anew what it costs, but votes count by it before. */
 static void give(beside *b, int x, int y, rc_copy copy, float price) {
   b->level->field[rc_level_at(b->level, x, y)] = copy;
@@ -137,9 +162,12 @@ recede_status rc_take_beside(rc_context *context, rc_level *level, uint64_t key,
   const rc_chart *chart = &level->chart;
   float steep = sqrtf(chart->lx * chart->lx + chart->ly * chart->ly);
   beside b = {.level = level, .key = key, .whole = whole};
+  bool any;
   if (!(steep > 0.f)) return RECEDE_OK;
   b.along_x = -chart->ly / steep, b.along_y = chart->lx / steep;
   b.width = fabsf(b.along_x) * (float)level->box_w + fabsf(b.along_y) * (float)level->box_h;
+  RC_TRY(any_wants(context, &b, &any));
+  if (!any) return RECEDE_OK;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, (size_t)level->box_w * (size_t)level->box_h, &b.queue));
   for (int y = level->box.y0; !whole && y < level->box.y1; y++) {
