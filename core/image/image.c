@@ -38,6 +38,17 @@ rc_box rc_box_common(rc_box a, rc_box b) {
                   a.y1 < b.y1 ? a.y1 : b.y1};
 }
 
+void rc_border_of_row(const rc_mask *flags, int y, int x0, int x1, uint8_t *border) {
+  const uint8_t *row = rc_flag(flags, 0, y);
+  const uint8_t *above = y > 0 ? row - flags->width : row;
+  const uint8_t *below = y + 1 < flags->height ? row + flags->width : row;
+  for (int x = x0; x < x1; x++) {
+    bool inner = x > 0 && x + 1 < flags->width;
+    uint8_t beside = inner ? row[x - 1] | row[x + 1] : row[x > 0 ? x - 1 : x + 1 < flags->width];
+    border[x - x0] = (row[x] & RC_TARGET) && ((above[x] | below[x] | beside) & RC_KNOWN);
+  }
+}
+
 rc_box rc_box_grown(rc_box box, int px, int width, int height) {
   return (rc_box){box.x0 > px ? box.x0 - px : 0, box.y0 > px ? box.y0 - px : 0,
                   box.x1 + px < width ? box.x1 + px : width,

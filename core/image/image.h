@@ -33,6 +33,8 @@ rc_box rc_box_of(const rc_mask *mask, int wanted);
 /* Adds RC_ALLOWED to all sources: what is taken from them later may still be copied by what knows
  * where it comes from. */
 void rc_allow_sources(rc_mask *mask);
+/* Which pixels x0 .. x1 - 1 of a row are target and touch a known one to a side: 1, else 0. */
+void rc_border_of_row(const rc_mask *flags, int y, int x0, int x1, uint8_t *border);
 /* So many px larger to each side, inside width x height. */
 rc_box rc_box_grown(rc_box box, int px, int width, int height);
 /* What both hold; x1 <= x0 or y1 <= y0: nothing. */

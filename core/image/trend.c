@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 #define MOST_SAMPLES 400000
 /* A trend must explain such a part of the differences between the neighbours of so many by so many
  * places. Where two things meet, a road and its verge, brightness steps, and a trend across the
@@ -59,39 +61,35 @@ void rc_places_sum(const rc_samples *samples, const rc_tone *tone, rc_box box, i
     for (int x = box.x0; x < box.x1; x += step) add_sample(samples, tone, box, x, y, places);
 }
 
-static bool is_at_border(const rc_mask *flags, int x, int y) {
-  static const int dx[4] = {1, -1, 0, 0}, dy[4] = {0, 0, 1, -1};
-  if (!(*rc_flag(flags, x, y) & RC_TARGET)) return false;
-  for (int k = 0; k < 4; k++)
-    if (rc_inside(flags->width, flags->height, x + dx[k], y + dy[k]) &&
-        *rc_flag(flags, x + dx[k], y + dy[k]) & RC_KNOWN)
-      return true;
-  return false;
-}
-
 /* What lies in a square around every n-th pixel of the hole's border, the more often the nearer. */
 static recede_status sum_around(rc_context *context, const rc_samples *samples, const rc_tone *tone,
                                 rc_box hole, rc_tone_places *places) {
   const rc_mask *flags = samples->flags;
   int px = (int)(AROUND_OF_HOLE * rc_longer_side(hole)), border = 0, seen = 0;
+  uint8_t *at;
   if (px < LEAST_AROUND_PX) px = LEAST_AROUND_PX;
   int step = px / AROUND_STEPS;
   rc_box box = rc_box_grown(hole, px, flags->width, flags->height);
   memset(places, 0, sizeof *places);
   places->side = PLACES;
-  for (int y = hole.y0; y < hole.y1; y++)
-    for (int x = hole.x0; x < hole.x1; x++) border += is_at_border(flags, x, y);
+  RC_TRY(RC_NEW(context, hole.x1 - hole.x0, &at));
+  for (int y = hole.y0; y < hole.y1; y++) {
+    rc_border_of_row(flags, y, hole.x0, hole.x1, at);
+    for (int x = hole.x0; x < hole.x1; x++) border += at[x - hole.x0];
+  }
   int every = border / MOST_OF_BORDER + 1;
   for (int y = hole.y0; y < hole.y1; y++) {
     RC_TRY(rc_poll(context));
+    rc_border_of_row(flags, y, hole.x0, hole.x1, at);
     for (int x = hole.x0; x < hole.x1; x++) {
-      if (!is_at_border(flags, x, y) || seen++ % every) continue;
+      if (!at[x - hole.x0] || seen++ % every) continue;
       for (int j = y - px; j <= y + px; j += step)
         for (int i = x - px; i <= x + px; i += step)
           if (i >= box.x0 && i < box.x1 && j >= box.y0 && j < box.y1)
             add_sample(samples, tone, box, i, j, places);
     }
   }
+  RC_FREE(context, &at);
   return RECEDE_OK;
 }
 

@@ -181,10 +181,14 @@ static double refuse_beyond(rc_context *context, rc_problem *problem, double lea
 /* Source that is too far away is none, unless target is as far. */
 static void refuse_far_source(rc_problem *problem, double least_target_w) {
   double least = fmin(LEAST_W_OF_SOURCE, least_target_w);
-  for (int y = 0; y < problem->flags.height; y++)
-    for (int x = 0; x < problem->flags.width; x++)
+  int last = problem->flags.width - 1;
+  for (int y = 0; y < problem->flags.height; y++) {
+    /* Along a row w only grows, or only falls. */
+    if (rc_w(&problem->line, 0, y) >= least && rc_w(&problem->line, last, y) >= least) continue;
+    for (int x = 0; x <= last; x++)
       if (rc_w(&problem->line, x, y) < least)
         *rc_flag(&problem->flags, x, y) &= (uint8_t)~RC_SOURCE;
+  }
 }
 
 /* Target that has target, or the picture's end, on its four sides. */
@@ -208,9 +212,9 @@ static void distrust_ring(rc_mask *flags) {
 }
 
 static recede_status check_source(rc_context *context, const rc_problem *problem) {
-  size_t pixels = (size_t)problem->flags.width * (size_t)problem->flags.height, sources = 0;
-  for (size_t i = 0; i < pixels; i++) sources += problem->flags.data[i] & RC_SOURCE ? 1 : 0;
-  if (sources) return RECEDE_OK;
+  size_t pixels = (size_t)problem->flags.width * (size_t)problem->flags.height;
+  for (size_t i = 0; i < pixels; i++)
+    if (problem->flags.data[i] & RC_SOURCE) return RECEDE_OK;
   if (problem->synthesis)
     return rc_fail(
         context, RECEDE_EMPTY_SOURCE,

@@ -163,19 +163,17 @@ static recede_status set_mean_change(rc_context *context, composition *c) {
   return RECEDE_OK;
 }
 
-static bool touches_known(const composition *c, int x, int y) {
-  for (int e = 0; e < 4; e++)
-    if (is_fixed(c->level, x + step_x[e], y + step_y[e])) return rc_level_is_target(c->level, x, y);
-  return false;
-}
-
 static recede_status collect_border(rc_context *context, composition *c) {
   const rc_box *box = &c->level->box;
+  const rc_mask flags = {c->level->width, c->level->height, c->level->flags};
+  uint8_t *at;
+  RC_TRY(RC_NEW(context, c->level->box_w, &at));
   for (int filling = 0; filling < 2; filling++) {
     c->border_count = 0;
     for (int y = box->y0; y < box->y1; y++) {
+      rc_border_of_row(&flags, y, box->x0, box->x1, at);
       for (int x = box->x0; x < box->x1; x++) {
-        if (!touches_known(c, x, y)) continue;
+        if (!at[x - box->x0]) continue;
         if (filling) c->border[c->border_count] = (int32_t)rc_level_at(c->level, x, y);
         c->border_count++;
       }
