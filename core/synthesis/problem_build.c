@@ -19,6 +19,10 @@
 #define LEAST_W_OF_TARGET .01
 /* Source with less than this part of w at the hole is below any use (mip level 5). */
 #define LEAST_W_OF_SOURCE .03
+/* The coarsest level's hole is at least 18 px across, and its patches see 4 px of what lies beside it
+ * and 2 more: a third of the hole's width. */
+#define BESIDE_OF_HOLE 3
+#define LEAST_BESIDE_PX 16
 /* The mask's ring: edges of what was removed bleed this far. */
 #define UNTRUSTED_RING_PX 2
 
@@ -227,10 +231,26 @@ static recede_status check_source(rc_context *context, const rc_problem *problem
       UNTRUSTED_RING_PX);
 }
 
+/* Of the box what lies on the plane's side of the horizon, and so much beside it as patches of the
+ * coarsest level reach: skies are often half of a picture. */
+static rc_box before_horizon(const recede_plane *plane, rc_box box, rc_box target) {
+  int width = target.x1 - target.x0, height = target.y1 - target.y0;
+  int px = (width < height ? width : height) / BESIDE_OF_HOLE + LEAST_BESIDE_PX;
+  rc_box on = {box.x1, box.y1, box.x0, box.y0};
+  for (int y = box.y0; y < box.y1; y++)
+    if (fmax(recede_plane_w(plane, box.x0, y), recede_plane_w(plane, box.x1 - 1, y)) > 0)
+      on.y0 = y < on.y0 ? y : on.y0, on.y1 = y + 1;
+  for (int x = box.x0; x < box.x1; x++)
+    if (fmax(recede_plane_w(plane, x, box.y0), recede_plane_w(plane, x, box.y1 - 1)) > 0)
+      on.x0 = x < on.x0 ? x : on.x0, on.x1 = x + 1;
+  if (on.x1 <= on.x0) return box; /* nothing: that is told later */
+  return rc_box_common(box, (rc_box){on.x0 - px, on.y0 - px, on.x1 + px, on.y1 + px});
+}
+
 recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
                                  const recede_plane *plane, const rc_target_summary *summary,
                                  rc_problem *problem) {
-  rc_box box = summary->looked_at;
+  rc_box box = before_horizon(plane, summary->looked_at, summary->box);
   double x = summary->x, y = summary->y;
   *problem = (rc_problem){.plane = *plane, .origin_x = box.x0, .origin_y = box.y0};
   int colours = views->image->channels < 3 ? 1 : 3;
