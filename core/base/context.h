@@ -12,9 +12,9 @@ typedef struct rc_pool rc_pool;
 
 typedef struct rc_context {
   recede_host host;
-  int threads; /* resolved: 1..64 */
+  int threads;                        /* resolved: 1..64 */
   atomic_int cancel_flag, *cancelled; /* its own, or the one of what it is a part of */
-  rc_block *blocks; /* newest first */
+  rc_block *blocks;                   /* newest first */
   uint64_t used_bytes, peak_bytes, limit_bytes, allocations;
   rc_pool *pool;
   char message[512];

@@ -43,6 +43,10 @@ static inline int rc_longer_side(rc_box box) {
   int width = box.x1 - box.x0, height = box.y1 - box.y0;
   return width > height ? width : height;
 }
+static inline int rc_shorter_side(rc_box box) {
+  int width = box.x1 - box.x0, height = box.y1 - box.y0;
+  return width < height ? width : height;
+}
 static inline float *rc_pixel(const rc_image *image, int x, int y) {
   return image->data + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;
 }

@@ -77,8 +77,7 @@ static recede_status build_pyramid(rc_context *context, const rc_problem *proble
   for (;;) {
     int last = e->level_count - 1;
     const rc_mask *flags = &e->flags[last];
-    int shorter = flags->width < flags->height ? flags->width : flags->height;
-    if (shorter / 2 < LEAST_LEVEL_PX) return RECEDE_OK;
+    if (e->shorter_px >> e->level_count < LEAST_LEVEL_PX) return RECEDE_OK;
     RC_TRY(rc_is_deep(context, flags, RC_TARGET, COARSEST_HOLE_PX, &deep));
     if (!deep || e->level_count == RC_MAX_LEVELS) return RECEDE_OK;
     RC_TRY(rc_is_deep(context, flags, RC_SOURCE, COARSEST_SOURCE_PX, &deep));
@@ -166,7 +165,7 @@ static recede_status find_due(rc_context *context, const rc_problem *problem, rc
       params->surface == RECEDE_SURFACE_RAISED)
     return RECEDE_OK;
   RC_TRY(rc_find_gain(context, &e->images[0], &problem->flags, &gain));
-  RC_TRY(rc_periods_of_all(context, e->images, e->flags, e->level_count, &flat, gain,
+  RC_TRY(rc_periods_of_all(context, e->images, e->flags, e->level_count, e->shorter_px, &flat, gain,
                            rc_key((uint64_t)e->params->seed, 95, 0), &e->of_all));
   e->due = e->of_all.due;
   return RECEDE_OK;
@@ -284,6 +283,9 @@ recede_status rc_fill_plane(rc_context *context, const rc_problem *problem,
                             const recede_params *params, bool restored, rc_image *filled,
                             rc_shortfall *shortfall, rc_known_rails *known) {
   rc_descent e = {.params = params,
+                  .cut_x = problem->cut_x,
+                  .cut_y = problem->cut_y,
+                  .shorter_px = problem->shorter_px,
                   .kernels = rc_kernels_select(context->host.kernel),
                   .take_beside = params->engine_beside && !problem->synthesis,
                   .rest = shortfall->rest};

@@ -11,8 +11,10 @@ typedef struct rc_problem {
   rc_box target;  /* bounding box of the TARGET pixels */
   rc_line line;   /* w: 1 at the target's centroid, proportional to 1 / depth, 0 on the horizon; all
                      that matters for copying within the plane */
-  recede_plane plane;         /* of the whole picture */
-  int origin_x, origin_y;     /* of image in the whole picture */
+  recede_plane plane;     /* of the whole picture */
+  int origin_x, origin_y; /* of image in the whole picture */
+  int cut_x, cut_y;       /* columns and rows before image's first that lie beyond the horizon */
+  int shorter_px;         /* side of what was looked at, with them */
   int exemplar_x, exemplar_y; /* synthesis: exemplar's pixel at image's (0, 0) */
   bool synthesis;             /* all of the exemplar is wanted */
   float least;                /* of a laid exemplar's known values, or 0 if that is less */

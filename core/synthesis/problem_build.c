@@ -19,10 +19,12 @@
 #define LEAST_W_OF_TARGET .01
 /* Source with less than this part of w at the hole is below any use (mip level 5). */
 #define LEAST_W_OF_SOURCE .03
-/* The coarsest level's hole is at least 18 px across, and its patches see 4 px of what lies beside it
- * and 2 more: a third of the hole's width. */
-#define BESIDE_OF_HOLE 3
-#define LEAST_BESIDE_PX 16
+/* The coarsest level's hole is at least 18 px across, and its patches see 4 px of what lies beside
+ * it and 2 more: a third of the hole's width. Where the picture seems to end, lines may, too. */
+#define BESIDE_OF_HOLE 2
+#define LEAST_BESIDE_PX 64
+/* So that all but the coarsest levels' pixels are what they would be. */
+#define ALIGNMENT_PX 64
 /* The mask's ring: edges of what was removed bleed this far. */
 #define UNTRUSTED_RING_PX 2
 
@@ -232,10 +234,9 @@ static recede_status check_source(rc_context *context, const rc_problem *problem
 }
 
 /* Of the box what lies on the plane's side of the horizon, and so much beside it as patches of the
- * coarsest level reach: skies are often half of a picture. */
+ * coarsest level reach, and lines are looked for: skies are often half of a picture. */
 static rc_box before_horizon(const recede_plane *plane, rc_box box, rc_box target) {
-  int width = target.x1 - target.x0, height = target.y1 - target.y0;
-  int px = (width < height ? width : height) / BESIDE_OF_HOLE + LEAST_BESIDE_PX;
+  int px = rc_shorter_side(target) / BESIDE_OF_HOLE + LEAST_BESIDE_PX;
   rc_box on = {box.x1, box.y1, box.x0, box.y0};
   for (int y = box.y0; y < box.y1; y++)
     if (fmax(recede_plane_w(plane, box.x0, y), recede_plane_w(plane, box.x1 - 1, y)) > 0)
@@ -244,7 +245,10 @@ static rc_box before_horizon(const recede_plane *plane, rc_box box, rc_box targe
     if (fmax(recede_plane_w(plane, x, box.y0), recede_plane_w(plane, x, box.y1 - 1)) > 0)
       on.x0 = x < on.x0 ? x : on.x0, on.x1 = x + 1;
   if (on.x1 <= on.x0) return box; /* nothing: that is told later */
-  return rc_box_common(box, (rc_box){on.x0 - px, on.y0 - px, on.x1 + px, on.y1 + px});
+  on = (rc_box){on.x0 - px, on.y0 - px, on.x1 + px, on.y1 + px};
+  if (on.x0 > box.x0) on.x0 -= (on.x0 - box.x0) % ALIGNMENT_PX;
+  if (on.y0 > box.y0) on.y0 -= (on.y0 - box.y0) % ALIGNMENT_PX;
+  return rc_box_common(box, on);
 }
 
 recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
@@ -252,7 +256,12 @@ recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
                                  rc_problem *problem) {
   rc_box box = before_horizon(plane, summary->looked_at, summary->box);
   double x = summary->x, y = summary->y;
-  *problem = (rc_problem){.plane = *plane, .origin_x = box.x0, .origin_y = box.y0};
+  *problem = (rc_problem){.plane = *plane,
+                          .origin_x = box.x0,
+                          .origin_y = box.y0,
+                          .cut_x = box.x0 - summary->looked_at.x0,
+                          .cut_y = box.y0 - summary->looked_at.y0,
+                          .shorter_px = rc_shorter_side(summary->looked_at)};
   int colours = views->image->channels < 3 ? 1 : 3;
   RC_TRY(rc_image_new(context, box.x1 - box.x0, box.y1 - box.y0, colours, &problem->image));
   RC_TRY(rc_mask_new(context, box.x1 - box.x0, box.y1 - box.y0, &problem->flags));
@@ -330,7 +339,8 @@ recede_status rc_problem_of_synthesis(rc_context *context, const rc_views *exemp
                                       const recede_plane *plane, bool laid, rc_problem *problem) {
   int width = plane->width, height = plane->height;
   double x = (width - 1) / 2., y = (height - 1) / 2., unused_x = 0, unused_y = 0;
-  *problem = (rc_problem){.plane = *plane, .synthesis = true};
+  *problem = (rc_problem){
+      .plane = *plane, .shorter_px = width < height ? width : height, .synthesis = true};
   if (laid) rc_lay_anchor(plane, &x, &y);
   if (recede_plane_w(plane, x, y) <= 0)
     return rc_fail(context, RECEDE_NO_PLANE,

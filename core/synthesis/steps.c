@@ -173,6 +173,7 @@ static recede_status cut_out(rc_context *context, const steps *s, rc_box box, in
   double sum_x = 0, sum_y = 0, targets = 0;
   *part = *s->problem;
   part->origin_x += box.x0, part->origin_y += box.y0;
+  part->cut_x = part->cut_y = 0, part->shorter_px = rc_shorter_side(box);
   part->line.c = rc_w(&part->line, box.x0, box.y0);
   RC_TRY(rc_image_new(context, width, height, channels, &part->image));
   RC_TRY(rc_mask_new(context, width, height, &part->flags));

@@ -87,7 +87,7 @@ static rc_copy draw(const beside *b, int x, int y) {
   float from_x = rc_level_x(level, x), from_y = rc_level_y(level, y), least = INFINITY, price;
   int side = rc_level_side(level, from_x, from_y);
   for (int n = 0; n < MOVES; n++) {
-    double chance = rc_unit(rc_random(b->key, (uint32_t)x, (uint32_t)y, (uint32_t)n));
+    double chance = rc_unit(rc_level_random(level, b->key, x, y, (uint32_t)n));
     float px = REACH_OF_WIDTH * b->width * (2.f * (float)chance - 1.f);
     float to_x = from_x + rc_round(px * b->along_x), to_y = from_y + rc_round(px * b->along_y);
     if (!(rc_level_w(level, to_x, to_y) > 0.f) || rc_level_side(level, to_x, to_y) != side)

@@ -239,7 +239,8 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   bool told = e->due && e->of_all.regular; /* by more than joints */
   bool joints = e->params->engine_joints && !told && !rc_runs(&e->rails);
   if (e->params->engine_periods)
-    RC_TRY(rc_find_periods(context, level, key, RC_PERIOD_POINTS, regular, joints, &e->periods));
+    RC_TRY(rc_find_periods(context, level, e->shorter_px >> exponent, key, RC_PERIOD_POINTS,
+                           regular, joints, &e->periods));
   if (e->params->engine_lattice && !lone)
     RC_TRY(rc_lattice_find(context, level, e->periods.copies, e->periods.count, &e->bends,
                            &e->lattice));
@@ -268,7 +269,8 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
     return rc_try_starts(context, e, &by_chance, &p, level, scratch, &best, &misfit);
   }
   rc_pace p = {0, rc_work_of_starts(plain, iterations) + rc_work_of_starts(with_lines, iterations) +
-                      rc_work_of_starts(in_lattice, iterations) + rc_work_of_starts(by_periods, iterations) +
+                      rc_work_of_starts(in_lattice, iterations) +
+                      rc_work_of_starts(by_periods, iterations) +
                       rails_tried * rc_work_of_starts(on_rails, iterations)};
   RC_TRY(rc_try_starts(context, e, &by_chance, &p, level, scratch, &best, &misfit));
   if (by_periods)

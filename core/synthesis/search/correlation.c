@@ -55,8 +55,8 @@ static void correlate_four(const probes *p, int dx, int dy, float value[4]) {
   for (int i = 0; i < p->c->count; i++) {
     rc_four to = taken(p, i, by, (float)dy), own = {p->own[i], p->own[i], p->own[i], p->own[i]};
     rc_four_ints seen = to == to;
-    four_sums one = __builtin_convertvector(rc_select(seen, (rc_four){1, 1, 1, 1}, (rc_four){0}),
-                                            four_sums);
+    four_sums one =
+        __builtin_convertvector(rc_select(seen, (rc_four){1, 1, 1, 1}, (rc_four){0}), four_sums);
     four_sums va = __builtin_convertvector(rc_select(seen, own, (rc_four){0}), four_sums);
     four_sums vb = __builtin_convertvector(rc_select(seen, to, (rc_four){0}), four_sums);
     n += one, a += va, b += vb, aa += va * va, bb += vb * vb, ab += va * vb;

@@ -94,6 +94,7 @@ recede_status rc_descend(rc_context *context, rc_descent *e, rc_level *finest) {
     level.sides = rc_sides_coarser(e->sides, exponent);
     level.conditions = rc_conditions_coarser(e->conditions, exponent);
     level.layers = e->layers;
+    level.cut_x = e->cut_x >> exponent, level.cut_y = e->cut_y >> exponent;
     if (!coarsest) level.ranges = coarser.ranges;
     if (e->on_lattice) level.lattice = rc_lattice_finer(coarser.lattice, 2.f);
     if (exponent >= last_searched(e))

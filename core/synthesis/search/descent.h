@@ -14,8 +14,9 @@
 typedef struct rc_descent {
   const recede_params *params;
   const rc_kernels *kernels;
-  rc_chart chart; /* of the finest level */
-  float gain;     /* of the bytes */
+  rc_chart chart;               /* of the finest level */
+  float gain;                   /* of the bytes */
+  int cut_x, cut_y, shorter_px; /* as the problem's */
   int level_count;
   rc_image images[RC_MAX_LEVELS];
   rc_mask flags[RC_MAX_LEVELS];

@@ -25,7 +25,8 @@ static void look_by(const float axis[3], views *v) {
     for (int i = 0; i < 3; i++) by[k] += axis[i] * level->colours[k][i];
   for (size_t i = 0; i < (size_t)level->width * (size_t)level->height; i++) {
     float value = 0;
-    for (int k = 0; k < RC_COMPONENTS; k++) value += by[k] * (float)(level->pixels[i] >> 8 * k & 255);
+    for (int k = 0; k < RC_COMPONENTS; k++)
+      value += by[k] * (float)(level->pixels[i] >> 8 * k & 255);
     v->outside[i] = level->flags[i] & (RC_SOURCE | RC_ALLOWED) ? value : NAN;
     v->everywhere[i] = level->flags[i] & (RC_KNOWN | RC_TARGET) ? value : NAN;
   }

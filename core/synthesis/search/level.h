@@ -3,6 +3,7 @@
 #ifndef RECEDE_SYNTHESIS_SEARCH_LEVEL_H
 #define RECEDE_SYNTHESIS_SEARCH_LEVEL_H
 
+#include "base/random.h"
 #include "image/image.h"
 #include "kernels/kernels.h"
 #include "synthesis/copy.h"
@@ -34,6 +35,7 @@ enum { RC_LOCKED = 1, RC_LOCKED_SURELY = 2 };
 
 typedef struct rc_level {
   int width, height;
+  int cut_x, cut_y; /* columns and rows that are left out before the first */
   uint32_t *pixels; /* a byte for each component; in the target the current guide */
   /* What each component says of red, green and blue, but for one factor. */
   float colours[RC_COMPONENTS][3];
@@ -66,6 +68,11 @@ typedef struct rc_level {
   int bins;
 } rc_level;
 
+/* Of a pixel, whatever is left out. */
+static inline uint64_t rc_level_random(const rc_level *level, uint64_t key, int x, int y,
+                                       uint32_t n) {
+  return rc_random(key, (uint32_t)(x + level->cut_x), (uint32_t)(y + level->cut_y), n);
+}
 static inline float rc_level_x(const rc_level *level, int x) { return (float)x - level->chart.x0; }
 static inline float rc_level_y(const rc_level *level, int y) { return (float)y - level->chart.y0; }
 static inline float rc_level_w(const rc_level *level, float x, float y) {

@@ -353,12 +353,12 @@ static recede_status find_by_all(rc_context *context, rc_correlation *c, int thi
   return RECEDE_OK;
 }
 
-recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key, int count,
-                              bool regular, bool joints, rc_periods *periods) {
+recede_status rc_find_periods(rc_context *context, const rc_level *level, int shorter_px,
+                              uint64_t key, int count, bool regular, bool joints,
+                              rc_periods *periods) {
   size_t pixels = (size_t)level->width * (size_t)level->height;
-  int shorter = level->width < level->height ? level->width : level->height;
-  int third = shorter / 3 < MOST_LAG_PX ? shorter / 3 : MOST_LAG_PX;
-  int half = shorter / 2 < MOST_LAG_PX ? shorter / 2 : MOST_LAG_PX;
+  int third = shorter_px / 3 < MOST_LAG_PX ? shorter_px / 3 : MOST_LAG_PX;
+  int half = shorter_px / 2 < MOST_LAG_PX ? shorter_px / 2 : MOST_LAG_PX;
   rc_correlation c;
   rc_periods row;
   float *trait;

@@ -24,10 +24,12 @@ typedef struct rc_periods {
   bool due;        /* patches do not see it as a whole, and it comes again beside the hole */
 } rc_periods;
 
-/* Peaks of the masked correlation of the level's sources with themselves, displaced in the plane.
- * count: of points. regular: whether to ask what is regular, or a row, too; joints: what is not by
- * itself may be so by its joints. */
-recede_status rc_find_periods(rc_context *context, const rc_level *level, uint64_t key, int count,
-                              bool regular, bool joints, rc_periods *periods);
+/* Peaks of the masked correlation of the level's sources with themselves, displaced in the plane by
+ * up to a part of the level's shorter side, as if nothing had been cut off. count: of points.
+ * regular: whether to ask what is regular, or a row, too; joints: what is not by itself may be so
+ * by its joints. */
+recede_status rc_find_periods(rc_context *context, const rc_level *level, int shorter_px,
+                              uint64_t key, int count, bool regular, bool joints,
+                              rc_periods *periods);
 
 #endif

@@ -14,8 +14,8 @@
 #define WIDEST 2.f
 
 recede_status rc_periods_of_all(rc_context *context, const rc_image *images, const rc_mask *flags,
-                                int levels, const rc_chart *chart, float gain, uint64_t key,
-                                rc_periods *periods) {
+                                int levels, int shorter_px, const rc_chart *chart, float gain,
+                                uint64_t key, rc_periods *periods) {
   rc_chart coarse = rc_chart_coarser(*chart, levels - 1);
   rc_traits none = {0};
   rc_level level;
@@ -23,7 +23,8 @@ recede_status rc_periods_of_all(rc_context *context, const rc_image *images, con
   RC_TRY(rc_level_new(context, &flags[levels - 1], &coarse, &level));
   level.sides.px = 1;
   RC_TRY(rc_level_see(context, &images[levels - 1], &none, 1.f, gain, true, &level));
-  RC_TRY(rc_find_periods(context, &level, key, RC_REGULAR_POINTS, true, false, periods));
+  RC_TRY(rc_find_periods(context, &level, shorter_px >> (levels - 1), key, RC_REGULAR_POINTS, true,
+                         false, periods));
   rc_release(context, mark);
   return rc_poll(context);
 }

@@ -8,10 +8,11 @@
 #include "synthesis/search/periods.h"
 
 /* What rc_find_periods tells of the coarsest level's sources, in its px. images and flags: the
- * pyramid's levels, finest first; chart: the finest level's; gain: byte = value * gain + 128. */
+ * pyramid's levels, finest first; shorter_px, chart: the finest level's; gain: byte = value * gain
+ * + 128. */
 recede_status rc_periods_of_all(rc_context *context, const rc_image *images, const rc_mask *flags,
-                                int levels, const rc_chart *chart, float gain, uint64_t key,
-                                rc_periods *periods);
+                                int levels, int shorter_px, const rc_chart *chart, float gain,
+                                uint64_t key, rc_periods *periods);
 /* Widens the ranges of scale until they hold, of each target pixel, the source nearest in scale
  * that such a move, by periods or along rails, leads to. */
 recede_status rc_reach_moves(rc_context *context, rc_level *level, const rc_copy *moves, int count);

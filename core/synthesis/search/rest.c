@@ -47,7 +47,7 @@ static bool draw_near(const rest *r, int x, int y, rc_copy *copy) {
   float down_x = chart->lx / steep, down_y = chart->ly / steep;
   for (int down = 1; down <= NEAR_PX; down *= 2)
     for (int n = 0; n < TRIES; n++) {
-      uint64_t bits = rc_random(r->key, (uint32_t)x, (uint32_t)y, (uint32_t)(TRIES * down + n));
+      uint64_t bits = rc_level_random(level, r->key, x, y, (uint32_t)(TRIES * down + n));
       float along = (float)((level->width + level->height) * (rc_unit(bits) - .5));
       float to_x = from_x + rc_round((float)down * down_x - along * down_y);
       float to_y = from_y + rc_round((float)down * down_y + along * down_x);
@@ -67,8 +67,8 @@ static bool draw(const rest *r, int x, int y, rc_copy *copy) {
   if (sources.begin == sources.end) return false;
   for (int n = 0; n < TRIES; n++) {
     int to_x, to_y;
-    rc_level_random_source(level, sources, rc_random(r->key, (uint32_t)x, (uint32_t)y, (uint32_t)n),
-                           &to_x, &to_y);
+    rc_level_random_source(level, sources, rc_level_random(level, r->key, x, y, (uint32_t)n), &to_x,
+                           &to_y);
     *copy = rc_copy_between(&level->chart, from_x, from_y, rc_level_x(level, to_x),
                             rc_level_y(level, to_y));
     if (leads_to_source(level, *copy, x, y)) return true;

@@ -103,7 +103,7 @@ static void try_nearby(const scan *s, pixel_state *state) {
   for (int radius = s->search->local_radius; radius >= 2; radius /= 2, n++) {
     rc_place place = rc_query_place(level, &state->query, state->best);
     if (place.beyond) return;
-    uint64_t bits = rc_random(s->search->key, (uint32_t)state->x, (uint32_t)state->y, (uint32_t)n);
+    uint64_t bits = rc_level_random(level, s->search->key, state->x, state->y, (uint32_t)n);
     int dx = (int)rc_below((uint32_t)bits, 2u * (uint32_t)radius + 1) - radius;
     int dy = (int)rc_below((uint32_t)(bits >> 32), 2u * (uint32_t)radius + 1) - radius;
     float x = place.x + (float)dx, y = place.y + (float)dy;
@@ -119,8 +119,7 @@ static void try_anywhere(const scan *s, pixel_state *state) {
   rc_sources sources = rc_level_sources(level, state->query.x, state->query.y, c);
   if (sources.begin == sources.end) return;
   for (int n = 0; n < s->search->anywhere; n++) {
-    uint64_t bits =
-        rc_random(s->search->key, (uint32_t)state->x, (uint32_t)state->y, 100u + (uint32_t)n);
+    uint64_t bits = rc_level_random(level, s->search->key, state->x, state->y, 100u + (uint32_t)n);
     rc_level_random_source(level, sources, bits, &x, &y);
     try_copy(s, state, copy_from(s, state, rc_level_x(level, x), rc_level_y(level, y)),
              CHANCE_MUST_BEAT);
@@ -143,8 +142,7 @@ static void try_periods(const scan *s, pixel_state *state) {
   bool stands = rc_chart_stands(&s->level->chart, state->query.x, state->query.y);
   rc_copy still = {0.f, 0.f, stands ? 1.f : 0.f};
   for (int n = 0; n < search->period_tries && search->period_count; n++) {
-    uint64_t bits =
-        rc_random(search->key, (uint32_t)state->x, (uint32_t)state->y, 200u + (uint32_t)n);
+    uint64_t bits = rc_level_random(s->level, search->key, state->x, state->y, 200u + (uint32_t)n);
     rc_copy period = search->periods[rc_below((uint32_t)bits, (uint32_t)search->period_count)];
     rc_copy from = bits >> 63 ? state->best : still;
     try_copy(s, state, shifted_by_period(s, state, from, period), CHANCE_MUST_BEAT);

@@ -51,7 +51,7 @@ static void consider_chance(const ring *r, choice *c, int x, int y) {
   rc_sources sources = rc_level_sources(level, c->query.x, c->query.y, class_index);
   if (sources.begin == sources.end) return;
   for (int n = 0; n < r->search->anywhere; n++) {
-    uint64_t bits = rc_random(r->search->key, (uint32_t)x, (uint32_t)y, (uint32_t)n);
+    uint64_t bits = rc_level_random(level, r->search->key, x, y, (uint32_t)n);
     rc_level_random_source(level, sources, bits, &sx, &sy);
     consider(r, c,
              rc_search_copy(r->search, level, c->query.x, c->query.y, rc_level_x(level, sx),
@@ -65,7 +65,7 @@ static void refine(const ring *r, choice *c, int x, int y) {
     for (int k = 0; k < 4; k++, n++) {
       if (isnan(c->best.a)) return;
       rc_place place = rc_query_place(level, &c->query, c->best);
-      uint64_t bits = rc_random(r->search->key, (uint32_t)x, (uint32_t)y, 500u + (uint32_t)n);
+      uint64_t bits = rc_level_random(level, r->search->key, x, y, 500u + (uint32_t)n);
       int dx = (int)rc_below((uint32_t)bits, 2u * (uint32_t)radius + 1) - radius;
       int dy = (int)rc_below((uint32_t)(bits >> 32), 2u * (uint32_t)radius + 1) - radius;
       if (!(rc_level_w(level, place.x + (float)dx, place.y + (float)dy) > 0.f)) continue;

@@ -236,7 +236,7 @@ static void project_row(void *user, int row, int thread) {
     for (int i = 0; i < p->inputs; i++) bytes += p->weights[i] * inputs[i];
     bytes = rc_select(bytes > least, bytes, least);
     bytes = rc_select(bytes < most, bytes, most);
-    rc_four_words whole = (rc_four_words)__builtin_convertvector(bytes, rc_four_ints);
+    rc_four_words whole = (rc_four_words) __builtin_convertvector(bytes, rc_four_ints);
     pixels[x] = whole[0] | whole[1] << 8 | whole[2] << 16 | whole[3] << 24;
   }
 }

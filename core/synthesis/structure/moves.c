@@ -17,8 +17,7 @@ static rc_box near(const rc_mask *flags) {
 }
 
 recede_status rc_moves_set(rc_context *context, const rc_image *image, const rc_mask *flags,
-                           rc_chart chart, bool near_hole, const rc_boundary *beside,
-                           rc_moves *m) {
+                           rc_chart chart, bool near_hole, const rc_boundary *beside, rc_moves *m) {
   rc_box box = rc_box_of(flags, RC_SOURCE); /* they may be few, of a large picture */
   if (near_hole) box = rc_box_common(box, near(flags));
   m->chart = rc_chart_flat(chart), m->most_change = INFINITY, m->count = 0;

@@ -49,8 +49,7 @@ static void sample_across(const rc_ruler *ruler, float x, float y, float apart,
     bool within = is_within(flags, px[o], py[o]);
     const float *v = ruler->picture->value;
     if (within) v += (size_t)py[o] * (size_t)flags->width + (size_t)px[o];
-    for (int k = 0; k < 4; k++)
-      corner[k][o] = within ? v[(k >> 1) * flags->width + (k & 1)] : NAN;
+    for (int k = 0; k < 4; k++) corner[k][o] = within ? v[(k >> 1) * flags->width + (k & 1)] : NAN;
   }
   for (int k = 0; k < 4; k++) corner[k][RC_PROFILE] = NAN;
   for (int o = 0; o < LANES; o++)

@@ -223,7 +223,8 @@ recede_status rc_rails_find(rc_context *context, const rc_image *images, const r
   if (told && runs(m, along)) {
     float reach_px = how_far(lines, *count, &masks[0]);
     rc_rails r = sharpened(m, along, reach_px / (float)(1 << coarse), COARSE_TURN);
-    RC_TRY(rc_moves_set(context, &images[fine], &masks[fine], rc_chart_coarser(*chart, fine), false, NULL, m));
+    RC_TRY(rc_moves_set(context, &images[fine], &masks[fine], rc_chart_coarser(*chart, fine), false,
+                        NULL, m));
     r = sharpened(m, r, reach_px / (float)(1 << fine), FINE_TURN);
     if (!has_marking(lines, *count) && keep_lines_straight(chart, lines, *count, coarse, r))
       *rails = r;

@@ -120,8 +120,8 @@ recede_status rc_repeats_beside(rc_context *context, const rc_image *images, con
   RC_TRY(RC_NEW(context, 1, &m));
   if (boundary->nx * (x - chart->x0) + boundary->ny * (y - chart->y0) + boundary->at < 0)
     b = rc_other_side(b);
-  RC_TRY(rc_moves_set(context, &images[coarsest], &masks[coarsest], rc_chart_coarser(*chart, coarsest), false, &b,
-               m));
+  RC_TRY(rc_moves_set(context, &images[coarsest], &masks[coarsest],
+                      rc_chart_coarser(*chart, coarsest), false, &b, m));
   RC_TRY(repeats(context, m, d.a, d.b, result));
   rc_release(context, mark);
   return RECEDE_OK;
