@@ -339,6 +339,7 @@ static void peak_within_the_estimate(void) {
     check_memory(300, 200, (area){100, 80, 130, 120}, channels, qualities[i / 2], 1);
   }
   check_memory(300, 200, (area){10, 20, 290, 180}, 3, qualities[1], 1);
+  check_memory(300, 200, (area){100, 80, 180, 150}, 1, qualities[1], 64); /* trials side by side */
   check_memory(300, 200, (area){10, 20, 290, 180}, 3, qualities[2], 1);
   check_memory(1400, 120, (area){50, 40, 1350, 82}, 3, qualities[2], 1);
   check_memory(1000, 700, (area){500, 400, 540, 430}, 3, qualities[0], 1);

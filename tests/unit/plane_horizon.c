@@ -166,10 +166,32 @@ static void what_stands_stays_upright(void) {
   }
 }
 
+static guint64 bytes_of(const char *horizon) {
+  picture image = picture_new(1400, 1000, 3, RECEDE_U8);
+  for (gsize i = 0; i < picture_bytes(&image); i++)
+    image.pixels[i] = (guint8)(255 * noise_at((int)i, 0, 1));
+  task t = task_new(image, "surface=flat engine-iterations=1 quality=draft");
+  task_set(&t, horizon);
+  task_hole(&t, (area){500, 680, 900, 960});
+  task_succeeds(&t);
+  guint64 bytes = t.report.peak_bytes;
+  task_clear(&t);
+  return bytes;
+}
+
+/* Sky is not even read: of the 820 rows that a hole of this size looks at 256 are. */
+static void sky_takes_no_memory(void) {
+  guint64 sky = bytes_of("orientation=horizon horizon=0,660,1399,660"),
+          none = bytes_of("orientation=horizon horizon=0,-900,1399,-900");
+  g_test_message("%.2f MB, without a sky %.2f", (double)sky / 1e6, (double)none / 1e6);
+  g_assert_cmpfloat((double)sky, <, .9 * (double)none);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   test_add_judged("/horizon/haze", haze_goes_on);
   test_add_judged("/horizon/standing", what_stands_stays_upright);
   g_test_add_func("/horizon/thin", thin_haze_goes_on);
+  g_test_add_func("/horizon/sky", sky_takes_no_memory);
   return g_test_run();
 }
