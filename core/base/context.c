@@ -40,28 +40,26 @@ void rc_context_clear(rc_context *context) {
   rc_release(context, NULL);
 }
 
-void rc_context_part(rc_context *context, int parts, rc_context *part) {
+void rc_context_part(const rc_context *context, rc_context *part) {
   memset(part, 0, sizeof *part);
   part->host = context->host;
+  part->host.progress = NULL;
   part->threads = 1;
   part->cancelled = context->cancelled;
-  part->limit_bytes = (context->limit_bytes - context->used_bytes) / (uint64_t)parts;
+  part->limit_bytes = context->limit_bytes;
+  part->used_bytes = part->peak_bytes = context->used_bytes;
   part->allocations = context->allocations;
-  part->stage = context->stage;
-  part->last_poll = context->last_poll;
-  part->fraction = context->fraction;
-  part->fraction_from = context->fraction_from, part->fraction_to = context->fraction_to;
 }
 
 void rc_context_join(rc_context *context, rc_context *parts, int count) {
-  uint64_t peak = context->used_bytes;
+  uint64_t peak = context->used_bytes, allocations = context->allocations;
   for (int i = 0; i < count; i++) {
-    peak += parts[i].peak_bytes;
-    if (parts[i].allocations > context->allocations) context->allocations = parts[i].allocations;
-    context->fraction = fmax(context->fraction, parts[i].fraction);
+    peak += parts[i].peak_bytes - context->used_bytes;
+    if (parts[i].allocations > allocations) allocations = parts[i].allocations;
     rc_context_clear(&parts[i]);
   }
   if (peak > context->peak_bytes) context->peak_bytes = peak;
+  context->allocations = allocations;
 }
 
 recede_status rc_fail(rc_context *context, recede_status status, const char *format, ...) {
@@ -124,13 +122,20 @@ static recede_status ask_host(rc_context *context) {
   return rc_cancelled(context) ? rc_fail(context, RECEDE_CANCELLED, "Cancelled.") : RECEDE_OK;
 }
 
+/* What the parent said. */
+static recede_status told(rc_context *context, recede_status status) {
+  return status == RECEDE_OK ? status : rc_fail(context, status, "%s", context->parent->message);
+}
+
 recede_status rc_progress(rc_context *context, double fraction) {
+  if (context->parent) return told(context, rc_progress(context->parent, fraction));
   double now = context->fraction_from + fraction * (context->fraction_to - context->fraction_from);
   if (now > context->fraction) context->fraction = fmin(now, 1);
   return fraction == 0 ? ask_host(context) : rc_poll(context);
 }
 
 recede_status rc_poll(rc_context *context) {
+  if (context->parent) return told(context, rc_poll(context->parent));
   if (rc_cancelled(context) || rc_seconds() - context->last_poll > POLL_SECONDS)
     return ask_host(context);
   return RECEDE_OK;

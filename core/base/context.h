@@ -10,9 +10,11 @@
 typedef struct rc_block rc_block;
 typedef struct rc_pool rc_pool;
 
-typedef struct rc_context {
+typedef struct rc_context rc_context;
+struct rc_context {
   recede_host host;
-  int threads;                        /* resolved: 1..64 */
+  rc_context *parent; /* of a part on the calling thread: it is asked instead of the host */
+  int threads;        /* resolved: 1..64 */
   atomic_int cancel_flag, *cancelled; /* its own, or the one of what it is a part of */
   rc_block *blocks;                   /* newest first */
   uint64_t used_bytes, peak_bytes, limit_bytes, allocations;
@@ -23,7 +25,7 @@ typedef struct rc_context {
   const char *stage;
   double fraction, fraction_from, fraction_to;
   double span_from, span_to; /* of the run, what stages are fractions of */
-} rc_context;
+};
 
 /* Passes any status but RECEDE_OK on to the caller. Memory needs no clean-up on the way: it belongs
  * to the context (base/memory.h). */
@@ -35,8 +37,8 @@ typedef struct rc_context {
 
 void rc_context_init(rc_context *context, const recede_host *host);
 void rc_context_clear(rc_context *context);
-/* One of so many parts of it, for one thread: with its part of what memory is left. */
-void rc_context_part(rc_context *context, int parts, rc_context *part);
+/* A part of it, for one thread: memory counts as if it were alone, and nobody is asked. */
+void rc_context_part(const rc_context *context, rc_context *part);
 /* Gives a part's memory back. Parts count their allocations from the same number on, and all may
  * have had the most they ever had at once. */
 void rc_context_join(rc_context *context, rc_context *parts, int count);

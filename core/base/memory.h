@@ -1,5 +1,6 @@
 /* Memory of a run: counted against the limit, owned by the context, given back by mark and release.
- * Calling thread only. Nothing is freed one by one on error paths: whoever took a mark releases. */
+ * One thread for each context. Nothing is freed one by one on error paths: whoever took a mark
+ * releases. */
 #ifndef RECEDE_BASE_MEMORY_H
 #define RECEDE_BASE_MEMORY_H
 

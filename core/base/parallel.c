@@ -1,10 +1,14 @@
 #include "base/parallel.h"
 
+#include <errno.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include "base/memory.h"
+
+#define ASKED_AFTER_NS 30000000
 
 struct rc_pool {
   pthread_mutex_t lock;
@@ -67,10 +71,26 @@ static rc_pool *pool_of(rc_context *context) {
   if (!pool) return NULL;
   pthread_mutex_init(&pool->lock, NULL);
   pthread_cond_init(&pool->wake, NULL);
-  pthread_cond_init(&pool->done, NULL);
+  pthread_condattr_t monotonic;
+  pthread_condattr_init(&monotonic);
+  pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+  pthread_cond_init(&pool->done, &monotonic);
+  pthread_condattr_destroy(&monotonic);
   context->pool = pool;
   start_workers(pool, context->threads - 1);
   return pool;
+}
+
+/* The host wants to be asked meanwhile. */
+static void wait_for_others(rc_pool *pool) {
+  struct timespec until;
+  clock_gettime(CLOCK_MONOTONIC, &until);
+  until.tv_nsec += ASKED_AFTER_NS;
+  if (until.tv_nsec >= 1000000000) until.tv_sec++, until.tv_nsec -= 1000000000;
+  if (pthread_cond_timedwait(&pool->done, &pool->lock, &until) != ETIMEDOUT) return;
+  pthread_mutex_unlock(&pool->lock);
+  rc_poll(pool->context);
+  pthread_mutex_lock(&pool->lock);
 }
 
 recede_status rc_parallel(rc_context *context, int count, rc_work *work, void *user) {
@@ -92,14 +112,14 @@ recede_status rc_parallel(rc_context *context, int count, rc_work *work, void *u
   take_items(pool, 0);
   if (pool != &alone) {
     pthread_mutex_lock(&pool->lock);
-    while (pool->busy > 0) pthread_cond_wait(&pool->done, &pool->lock);
+    while (pool->busy > 0) wait_for_others(pool);
     pthread_mutex_unlock(&pool->lock);
   }
   return rc_cancelled(context) ? rc_poll(context) : RECEDE_OK;
 }
 
 typedef struct lanes {
-  rc_context *contexts;
+  rc_context *context, *contexts; /* of all, of each lane */
   rc_task *task;
   void *user;
   recede_status *status; /* of each item */
@@ -108,11 +128,10 @@ typedef struct lanes {
   atomic_int next, failed;
 } lanes;
 
-/* The host is asked by the calling thread only. */
 static void run_lane(void *user, int lane, int thread) {
   lanes *l = user;
   rc_context *own = &l->contexts[lane];
-  if (thread) own->host.progress = NULL;
+  if (thread == 0) own->parent = l->context;
   while (!atomic_load_explicit(&l->failed, memory_order_relaxed)) {
     int item = atomic_fetch_add_explicit(&l->next, 1, memory_order_relaxed);
     if (item >= l->count) return;
@@ -125,13 +144,13 @@ static void run_lane(void *user, int lane, int thread) {
 
 recede_status rc_parallel_tasks(rc_context *context, int count, int lane_count, rc_task *task,
                                 void *user) {
-  lanes l = {.task = task, .user = user, .count = count};
+  lanes l = {.context = context, .task = task, .user = user, .count = count};
   recede_status status;
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, lane_count, &l.contexts));
   RC_TRY(RC_NEW_ZERO(context, count, &l.status));
   RC_TRY(RC_NEW_ZERO(context, count, &l.lane));
-  for (int i = 0; i < lane_count; i++) rc_context_part(context, lane_count, &l.contexts[i]);
+  for (int i = 0; i < lane_count; i++) rc_context_part(context, &l.contexts[i]);
   status = rc_parallel(context, lane_count, run_lane, &l);
   for (int i = 0; i < count && status == RECEDE_OK; i++)
     if (l.status[i] != RECEDE_OK)

@@ -9,14 +9,15 @@
 /* Calls work(user, item, thread) once for each item in 0..count-1, in any order, on
  * context->threads threads; thread is 0..threads-1 and names scratch memory. Items must write
  * disjoint memory and read nothing that another item writes: then the result is the same for any
- * number of threads. work must not allocate, fail or call the host. Between items of its own the
- * calling thread polls the host; RECEDE_CANCELLED leaves the rest undone. */
+ * number of threads. work must not allocate, fail or call the host. Between items of its own, and
+ * while it waits for others', the calling thread polls the host; RECEDE_CANCELLED leaves the rest
+ * undone. */
 typedef void rc_work(void *user, int item, int thread);
 recede_status rc_parallel(rc_context *context, int count, rc_work *work, void *user);
 
 /* The same for work that allocates, fails and asks the host as any stage does: it is given a
- * context of its own for that, one of so many lanes, each with its part of what memory is left.
- * lane is 0..lanes-1. Nothing of an item's memory is left for the next one, or after it. What the
+ * context of its own for that, one of so many lanes; lane is 0..lanes-1. Nothing of an item's
+ * memory is left for the next one, or after it. All lanes together must keep to the limit. What the
  * first item that failed says is what this says. */
 typedef recede_status rc_task(rc_context *own, void *user, int item, int lane);
 recede_status rc_parallel_tasks(rc_context *context, int count, int lanes, rc_task *task,

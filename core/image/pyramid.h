@@ -4,6 +4,8 @@
 
 #include "image/image.h"
 
+/* A side of so many px, halved so many times. */
+static inline int rc_halved(int px, int times) { return (px + (1 << times) - 1) >> times; }
 /* [1 3 3 1] / 8 in x and y over the KNOWN pixels. A coarse pixel is TARGET if any of its four is,
  * KNOWN or SOURCE if all four are. Sizes round up; what lies beyond the border repeats it. */
 recede_status rc_half(rc_context *context, const rc_image *image, const rc_mask *flags,

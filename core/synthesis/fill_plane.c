@@ -77,7 +77,7 @@ static recede_status build_pyramid(rc_context *context, const rc_problem *proble
   for (;;) {
     int last = e->level_count - 1;
     const rc_mask *flags = &e->flags[last];
-    if (e->shorter_px >> e->level_count < LEAST_LEVEL_PX) return RECEDE_OK;
+    if (rc_halved(e->shorter_px, last) / 2 < LEAST_LEVEL_PX) return RECEDE_OK;
     RC_TRY(rc_is_deep(context, flags, RC_TARGET, COARSEST_HOLE_PX, &deep));
     if (!deep || e->level_count == RC_MAX_LEVELS) return RECEDE_OK;
     RC_TRY(rc_is_deep(context, flags, RC_SOURCE, COARSEST_SOURCE_PX, &deep));

@@ -2,6 +2,7 @@
 #include "synthesis/problem.h"
 #include "synthesis/search/cuts.h"
 #include "synthesis/search/effort.h"
+#include "synthesis/search/trial.h"
 #include "synthesis/sources/kin.h"
 #include "synthesis/sources/places.h"
 
@@ -28,5 +29,6 @@ uint64_t rc_plane_bytes(uint64_t pixels, uint64_t columns, uint64_t rows, int ch
   /* Before it, of the coarsest level. */
   uint64_t kin = RC_KIN_BYTES_PER_PX * (pixels < RC_MOST_LOOKED_AT ? pixels : RC_MOST_LOOKED_AT);
   uint64_t steps = pixels * (4 * c + 5);
-  return pyramid + conditions + (descent > kin ? descent : kin) + steps + ((uint64_t)4 << 20);
+  return pyramid + conditions + (descent > kin ? descent : kin) + steps + RC_MOST_BYTES_OF_LANES +
+         ((uint64_t)4 << 20);
 }

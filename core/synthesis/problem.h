@@ -13,8 +13,9 @@ typedef struct rc_problem {
                      that matters for copying within the plane */
   recede_plane plane;     /* of the whole picture */
   int origin_x, origin_y; /* of image in the whole picture */
-  int cut_x, cut_y;       /* columns and rows before image's first that lie beyond the horizon */
-  int shorter_px;         /* side of what was looked at, with them */
+  /* Columns and rows before image's first that lie beyond the horizon, and the shorter side of what
+   * was looked at with them: what is decided by chance and by size goes by these. */
+  int cut_x, cut_y, shorter_px;
   int exemplar_x, exemplar_y; /* synthesis: exemplar's pixel at image's (0, 0) */
   bool synthesis;             /* all of the exemplar is wanted */
   float least;                /* of a laid exemplar's known values, or 0 if that is less */

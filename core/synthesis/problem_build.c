@@ -23,7 +23,7 @@
  * it and 2 more: a third of the hole's width. Where the picture seems to end, lines may, too. */
 #define BESIDE_OF_HOLE 2
 #define LEAST_BESIDE_PX 64
-/* So that all but the coarsest levels' pixels are what they would be. */
+/* So that pixels of the six finest levels are what they would be. */
 #define ALIGNMENT_PX 64
 /* The mask's ring: edges of what was removed bleed this far. */
 #define UNTRUSTED_RING_PX 2
@@ -276,6 +276,8 @@ recede_status rc_problem_of_fill(rc_context *context, const rc_views *views,
   problem->line = line_of(plane, box.x0, box.y0, x, y);
   double least_w = LEAST_W_OF_TARGET * nearest / recede_plane_w(plane, x, y);
   refuse_far_source(problem, refuse_beyond(context, problem, least_w));
+  /* Some may lie farther beyond it than is read. */
+  context->report.refused_pixels = summary->pixels - context->report.filled_pixels;
   distrust_ring(&problem->flags);
   if (context->report.refused_pixels)
     rc_warn(

@@ -295,6 +295,27 @@ static void short_calls_can_be_cancelled(void) {
   task_clear(&t);
 }
 
+/* Also while starts are tried side by side. */
+static int goes_on(void *user, const char *stage, double fraction) {
+  double *last = user;
+  g_assert_nonnull(stage);
+  g_assert_cmpfloat(fraction, >=, *last);
+  *last = fraction;
+  return 0;
+}
+
+static void progress_only_grows(void) {
+  for (int threads = 1; threads <= 3; threads++) {
+    task t = task_new(picture_of_plane(480, 360, 3, RECEDE_U8, grains, 6, 40, 0), "slant=40");
+    double last = 0;
+    t.host.threads = threads, t.host.progress = goes_on, t.host.user = &last;
+    task_hole(&t, (area){160, 120, 320, 280});
+    task_succeeds(&t);
+    g_assert_cmpfloat(last, >, .9);
+    task_clear(&t);
+  }
+}
+
 static recede_surface surface_of(picture image, double slant) {
   task t = task_new(image, "surface=auto quality=draft engine-iterations=1");
   t.params.slant_deg = slant;
@@ -324,6 +345,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/plane/cut", synthesis_may_cut);
   test_add_judged("/plane/far", texture_reaches_the_horizon);
   g_test_add_func("/plane/cancel", short_calls_can_be_cancelled);
+  g_test_add_func("/plane/progress", progress_only_grows);
   g_test_add_func("/plane/surface", surface_is_told);
   return g_test_run();
 }

@@ -1,6 +1,7 @@
 /* Holes that reach the horizon. Near it all is small, so that what a hole has there is little of it
  * and much of what is seen: it must look like what lies beside it. */
 #include <math.h>
+#include <string.h>
 
 #include "plane_scene.h"
 
@@ -187,11 +188,30 @@ static void sky_takes_no_memory(void) {
   g_assert_cmpfloat((double)sky, <, .9 * (double)none);
 }
 
+/* What is refused is counted and told, also where it is not read. */
+static void all_of_the_sky_is_refused(void) {
+  picture image = picture_new(500, 700, 1, RECEDE_U8);
+  for (gsize i = 0; i < picture_bytes(&image); i++)
+    image.pixels[i] = (guint8)(255 * noise_at((int)i, 0, 1));
+  task t = task_new(image, "quality=draft orientation=horizon horizon=0,500,499,500");
+  task_hole(&t, (area){220, 20, 260, 620});
+  task_succeeds(&t);
+  g_assert_cmpuint(t.report.filled_pixels + t.report.refused_pixels, ==, 40 * 600);
+  g_assert_cmpuint(t.report.refused_pixels, >=, 40 * 480);
+  g_assert_nonnull(strstr(t.report.warning, "beyond the horizon"));
+  task_assert_outside(&t);
+  for (int y = 20; y < 500; y++)
+    for (int x = 220; x < 260; x++)
+      g_assert_cmpfloat(picture_get(&t.result, x, y, 0), ==, picture_get(&t.image, x, y, 0));
+  task_clear(&t);
+}
+
 int main(int argc, char **argv) {
   g_test_init(&argc, &argv, NULL);
   test_add_judged("/horizon/haze", haze_goes_on);
   test_add_judged("/horizon/standing", what_stands_stays_upright);
   g_test_add_func("/horizon/thin", thin_haze_goes_on);
   g_test_add_func("/horizon/sky", sky_takes_no_memory);
+  g_test_add_func("/horizon/refused", all_of_the_sky_is_refused);
   return g_test_run();
 }

@@ -4,9 +4,9 @@
 
 #include "base/memory.h"
 #include "base/random.h"
+#include "image/pyramid.h"
 #include "synthesis/search/boards.h"
 #include "synthesis/search/effort.h"
-#include "synthesis/search/kept.h"
 #include "synthesis/search/lattice_find.h"
 #include "synthesis/search/lock.h"
 #include "synthesis/search/regular.h"
@@ -231,6 +231,7 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   int plain = rc_trials_worth(level, wanted ? wanted : rc_effort_of(e->params)->starts);
   int half = (plain + 1) / 2, iterations = rc_iterations_at(e, exponent);
   uint64_t key = rc_key((uint64_t)e->params->seed, 99, 0);
+  size_t box = (size_t)level->box_w * (size_t)level->box_h;
   double misfit;
   rc_trial best;
   /* What stands alone comes again in no lattice. */
@@ -238,9 +239,11 @@ recede_status rc_run_coarsest(rc_context *context, rc_descent *e, rc_level *leve
   bool regular = e->params->engine_regular && e->params->surface != RECEDE_SURFACE_RAISED && !lone;
   bool told = e->due && e->of_all.regular; /* by more than joints */
   bool joints = e->params->engine_joints && !told && !rc_runs(&e->rails);
+  for (size_t i = 0; i < box; i++)
+    level->field[i] = (rc_copy){NAN, NAN, NAN}, level->cost[i] = RC_NO_COST;
   if (e->params->engine_periods)
-    RC_TRY(rc_find_periods(context, level, e->shorter_px >> exponent, key, RC_PERIOD_POINTS,
-                           regular, joints, &e->periods));
+    RC_TRY(rc_find_periods(context, level, rc_halved(e->shorter_px, exponent), key,
+                           RC_PERIOD_POINTS, regular, joints, &e->periods));
   if (e->params->engine_lattice && !lone)
     RC_TRY(rc_lattice_find(context, level, e->periods.copies, e->periods.count, &e->bends,
                            &e->lattice));

@@ -176,8 +176,10 @@ recede_status rc_correlate(rc_context *context, rc_correlation *c, int lag, rc_p
   probes p;
   c->lag = lag;
   RC_TRY(RC_NEW(context, (lag + 1) * (2 * lag + 1), &c->value));
+  rc_block *mark = rc_mark(context);
   RC_TRY(see_points(context, c, &p));
   RC_TRY(rc_parallel(context, lag + 1, correlate_row, &p));
+  rc_release(context, mark);
   return find_peaks(context, c, peaks, count);
 }
 

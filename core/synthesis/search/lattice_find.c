@@ -158,7 +158,7 @@ static void look_around(survey *s) {
     int column = i % level->width, row = i / level->width;
     if (!level->room[i]) continue;
     /* By chance: every n-th would have a lattice of its own. */
-    if (rc_random(PIXELS_KEY, (uint32_t)column, (uint32_t)row, 0) % step) continue;
+    if (rc_level_random(level, PIXELS_KEY, column, row, 0) % step) continue;
     float x = rc_level_x(level, column), y = rc_level_y(level, row), w = rc_level_w(level, x, y);
     if (!(w > 1 / WIDEST_RATIO && w < WIDEST_RATIO)) continue;
     if (fabsf(x / w) < edge && fabsf(y / w) < edge)

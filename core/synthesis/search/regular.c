@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "image/pyramid.h"
 #include "synthesis/search/evaluate.h"
 
 /* So many periods each way, and of a row. */
@@ -23,8 +24,8 @@ recede_status rc_periods_of_all(rc_context *context, const rc_image *images, con
   RC_TRY(rc_level_new(context, &flags[levels - 1], &coarse, &level));
   level.sides.px = 1;
   RC_TRY(rc_level_see(context, &images[levels - 1], &none, 1.f, gain, true, &level));
-  RC_TRY(rc_find_periods(context, &level, shorter_px >> (levels - 1), key, RC_REGULAR_POINTS, true,
-                         false, periods));
+  RC_TRY(rc_find_periods(context, &level, rc_halved(shorter_px, levels - 1), key, RC_REGULAR_POINTS,
+                         true, false, periods));
   rc_release(context, mark);
   return rc_poll(context);
 }

@@ -11,8 +11,11 @@
  * scored 82, the best of four 91, and the one this picks 86 to 87, with prices of .1 to .3. */
 #define PRICE_OF_CONTRAST .2
 #define MOST_SAMPLES 4096
-/* Lanes are copies of the coarsest level, .2 MB where a hole is as wide as long. */
-#define MOST_BYTES_OF_LANES (4 << 20)
+/* Of a lane, the copy of a level and what a start, a vote and prices allocate: .3 MB where a hole
+ * is as wide as long; and what whole copies do. */
+#define LANE_BYTES_PER_PX 15
+#define LANE_BYTES_PER_BOX_PX 48
+#define LANE_BYTES ((size_t)7 << 18)
 
 static int target_pixels(const rc_level *level) {
   int count = 0;
@@ -71,12 +74,13 @@ static recede_status lane_new(rc_context *context, const rc_level *level, bool u
 
 recede_status rc_lanes_new(rc_context *context, const rc_level *level, const rc_workspace *scratch,
                            int trials, rc_lane **lanes, int *count) {
-  size_t bytes = (size_t)level->width * (size_t)level->height * (4 + 1 + 4) +
-                 (size_t)level->box_w * (size_t)level->box_h * (2 * sizeof(rc_copy) + 4);
+  size_t bytes = LANE_BYTES_PER_PX * (size_t)level->width * (size_t)level->height +
+                 LANE_BYTES_PER_BOX_PX * (size_t)level->box_w * (size_t)level->box_h + LANE_BYTES;
   *count = context->threads < trials ? context->threads : trials;
-  while (*count > 1 && (size_t)*count * bytes > MOST_BYTES_OF_LANES) (*count)--;
+  while (*count > 1 && (size_t)*count * bytes > RC_MOST_BYTES_OF_LANES) (*count)--;
   RC_TRY(RC_NEW(context, *count, lanes));
-  for (int n = 0; n < *count; n++)
+  **lanes = (rc_lane){*level, *scratch};
+  for (int n = 0; n<*count && * count> 1; n++)
     RC_TRY(lane_new(context, level, scratch->usage != NULL, &(*lanes)[n]));
   return RECEDE_OK;
 }

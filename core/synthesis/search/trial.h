@@ -21,7 +21,10 @@ typedef struct rc_lane {
   rc_workspace scratch;
 } rc_lane;
 
-/* In how many lanes so many trials can be run beside each other, and these. */
+/* At the most, with what is allocated in them. */
+#define RC_MOST_BYTES_OF_LANES ((size_t)12 << 20)
+/* In how many lanes so many trials can be run beside each other, and these; one alone is the level
+ * itself. */
 recede_status rc_lanes_new(rc_context *context, const rc_level *level, const rc_workspace *scratch,
                            int trials, rc_lane **lanes, int *count);
 /* How many starts of so many are worth their time in this level. */
