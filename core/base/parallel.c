@@ -142,10 +142,20 @@ static void run_lane(void *user, int lane, int thread) {
   }
 }
 
+static recede_status one_after_another(rc_context *context, int count, rc_task *task, void *user) {
+  for (int item = 0; item < count; item++) {
+    rc_block *mark = rc_mark(context);
+    RC_TRY(task(context, user, item, 0));
+    rc_release(context, mark);
+  }
+  return RECEDE_OK;
+}
+
 recede_status rc_parallel_tasks(rc_context *context, int count, int lane_count, rc_task *task,
                                 void *user) {
   lanes l = {.context = context, .task = task, .user = user, .count = count};
   recede_status status;
+  if (lane_count == 1) return one_after_another(context, count, task, user);
   rc_block *mark = rc_mark(context);
   RC_TRY(RC_NEW(context, lane_count, &l.contexts));
   RC_TRY(RC_NEW_ZERO(context, count, &l.status));

@@ -16,9 +16,9 @@ typedef void rc_work(void *user, int item, int thread);
 recede_status rc_parallel(rc_context *context, int count, rc_work *work, void *user);
 
 /* The same for work that allocates, fails and asks the host as any stage does: it is given a
- * context of its own for that, one of so many lanes; lane is 0..lanes-1. Nothing of an item's
- * memory is left for the next one, or after it. All lanes together must keep to the limit. What the
- * first item that failed says is what this says. */
+ * context of its own for that, one of so many lanes, 0..lanes-1; one alone is the context itself,
+ * with all its threads. Nothing of an item's memory is left for the next one, or after it. All
+ * lanes together must keep to the limit. What the first item that failed says is what this says. */
 typedef recede_status rc_task(rc_context *own, void *user, int item, int lane);
 recede_status rc_parallel_tasks(rc_context *context, int count, int lanes, rc_task *task,
                                 void *user);

@@ -51,16 +51,17 @@ typedef struct race {
   const rc_starts *s;
   rc_pace *pace;
   rc_lane *lanes;
-  rc_trial before; /* what each begins with */
+  rc_trial before; /* what each begins with, where its start has no copy */
+  int begun;       /* so many have by themselves */
   rc_trial *trials;
   double *misfits;
   int *better; /* those that get the rest of their iterations */
 } race;
 
-static recede_status begin_trial(rc_context *own, void *user, int n, int at) {
+static recede_status begin_trial(rc_context *own, void *user, int item, int at) {
   race *r = user;
   rc_lane *lane = &r->lanes[at];
-  int exponent = r->e->level_count - 1, trial = r->s->first + n;
+  int n = r->begun + item, exponent = r->e->level_count - 1, trial = r->s->first + n;
   rc_trial_restore(&lane->level, &r->before);
   RC_TRY(start_once(own, r->e, r->s, trial, &lane->level));
   RC_TRY(rc_iterate(own, r->e, exponent, trial, 0, first_part(rc_iterations_at(r->e, exponent)),
@@ -115,7 +116,12 @@ recede_status rc_try_starts(rc_context *context, const rc_descent *e, const rc_s
   for (int n = 0; n < count; n++) RC_TRY(rc_trial_new(context, level, &r.trials[n]));
   RC_TRY(rc_lanes_new(context, level, scratch, count, &r.lanes, &lanes));
   rc_trial_save(level, &r.before);
-  RC_TRY(rc_parallel_tasks(context, count, lanes, begin_trial, &r));
+  if (s->first_whole < s->end) { /* leave much without a copy: there they begin as the first ends */
+    RC_TRY(begin_trial(context, &r, 0, 0));
+    rc_trial_save(&r.lanes[0].level, &r.before);
+    r.begun = 1;
+  }
+  RC_TRY(rc_parallel_tasks(context, count - r.begun, lanes, begin_trial, &r));
   take_better(&r, count);
   RC_TRY(rc_parallel_tasks(context, better_half(count), lanes, end_trial, &r));
   int kept = r.better[0];

@@ -80,7 +80,8 @@ recede_status rc_lanes_new(rc_context *context, const rc_level *level, const rc_
   while (*count > 1 && (size_t)*count * bytes > RC_MOST_BYTES_OF_LANES) (*count)--;
   RC_TRY(RC_NEW(context, *count, lanes));
   **lanes = (rc_lane){*level, *scratch};
-  for (int n = 0; n<*count && * count> 1; n++)
+  int copies = *count > 1 ? *count : 0;
+  for (int n = 0; n < copies; n++)
     RC_TRY(lane_new(context, level, scratch->usage != NULL, &(*lanes)[n]));
   return RECEDE_OK;
 }
