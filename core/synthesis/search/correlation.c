@@ -43,7 +43,7 @@ static rc_four taken(const probes *p, int i, rc_four dx, float dy) {
                      (to_x < (float)level->width) & (to_y < (float)level->height);
   rc_four_ints px = __builtin_convertvector(rc_select(may, to_x, (rc_four){0}), rc_four_ints);
   rc_four_ints py = __builtin_convertvector(rc_select(may, to_y, (rc_four){0}), rc_four_ints);
-  rc_four value;
+  rc_four value = {0};
   for (int k = 0; k < 4; k++)
     value[k] = p->known[(size_t)py[k] * (size_t)level->width + (size_t)px[k]];
   return rc_select(may, value, (rc_four){NAN, NAN, NAN, NAN});
