@@ -63,7 +63,7 @@ native() {
   fi
   meson_test fast "" build --suite fast
   if [ $fast = 0 ]; then
-    meson_test full "" build --no-suite fast --timeout-multiplier 2
+    meson_test full "" build --no-suite fast --no-suite gimp2 --timeout-multiplier 2
   fi
 }
 
@@ -91,6 +91,10 @@ sanitized() {
   meson_test "$label" "" "$folder" --timeout-multiplier 6 "${selection[@]}"
 }
 
+gimp2() {
+  meson_test gimp2 "" build --suite gimp2 --no-suite fast --timeout-multiplier 2
+}
+
 gimp3() {
   local inside=tests/gimp/chroot.sh
   step chroot-gimp3 $inside make || return
@@ -102,6 +106,27 @@ gimp3() {
     cp "$logs/gimp3.out" "$logs/gimp3-tests.log"
     echo "gimp3-tests: no test ran in GIMP 3" >>"$logs/failed-steps"
   fi
+}
+
+# succeeded NAME PROCESS: waits for a step in the background; one that says nothing was killed.
+succeeded() {
+  wait "$2" && return
+  grep -qs -e "$1" "$logs/failed-steps" || echo "$1: ended by itself" >>"$logs/failed-steps"
+  return 1
+}
+
+# GIMP's windows keep one core busy: what needs no window goes on beside them.
+gimp_and_sanitizers() {
+  local building fuzzing
+  build_sanitized sanitize &
+  building=$!
+  gimp2
+  step packages-fuzz install_packages fuzz
+  step fuzz nice tests/fuzz/run.sh 20 1 &
+  fuzzing=$!
+  gimp3
+  succeeded fuzz "$fuzzing"
+  succeeded -sanitize "$building" && sanitized sanitize
 }
 
 rm -rf "$logs"
@@ -116,20 +141,12 @@ fi
 if [ -n "$sanitize" ]; then
   build_sanitized "$sanitize" && sanitized "$sanitize"
 else
-  if [ $ci = 1 ]; then
-    # Beside all else, GIMP's windows above all, which keep one core busy.
-    build_sanitized sanitize &
-    building=$!
-  fi
   native
-  if [ $fast = 0 ] && [ ${#names[@]} = 0 ] && [ -e plugin/gimp3 ]; then gimp3; fi
   if [ $ci = 1 ]; then
-    if wait "$building"; then
-      sanitized sanitize
-    elif ! grep -qs -e -sanitize: "$logs/failed-steps"; then
-      echo "compile-sanitize: ended by itself" >>"$logs/failed-steps"
-    fi
-    step packages-fuzz install_packages fuzz && step fuzz tests/fuzz/run.sh 20 1
+    gimp_and_sanitizers
+  elif [ $fast = 0 ] && [ ${#names[@]} = 0 ]; then
+    gimp2
+    gimp3
   fi
 fi
 /usr/bin/python3 tests/lib/summary.py "$logs"

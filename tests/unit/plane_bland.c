@@ -107,7 +107,7 @@ typedef bool shows(const picture *p, int x, int y);
 static double part_of(picture (*draw)(void), area hole, int columns, const char *settings,
                       int source_x0, shows *is_it) {
   double found = 0, all = 0;
-  for (int seed = 0; seed < 2; seed++) {
+  for (int seed = 0; seed < some_of(2); seed++) {
     task t = filled(draw(), hole, settings, seed, source_x0);
     for (int y = hole.y0; y < hole.y1; y++)
       for (int x = hole.x0 + columns; x < hole.x1 - columns; x++)

@@ -45,7 +45,7 @@ static int columns_wrong(double slope, int beside_px, int seed) {
 
 static void others_stay_where_they_are(void) {
   static const int beside_px[] = {5, 8, 11, 17, 20};
-  int wrong = 0, holes = 2 * (int)G_N_ELEMENTS(beside_px);
+  int wrong = 0, holes = some_of(2 * G_N_ELEMENTS(beside_px));
   for (int n = 0; n < holes; n++) {
     double slope = n % 2 ? .15 : .05;
     int here = columns_wrong(slope, beside_px[n / 2], n);

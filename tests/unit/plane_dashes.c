@@ -53,7 +53,7 @@ static const area holes[] = {
 
 static double part_right(double tilt_deg, double said_deg, const char *settings) {
   paint sum = {0, 0, 0};
-  for (int i = 0; i < (int)G_N_ELEMENTS(holes); i++) {
+  for (int i = 0; i < some_of(G_N_ELEMENTS(holes)); i++) {
     paint p = painted_right(tilt_deg, said_deg, holes[i], settings);
     sum.right += p.right, sum.all += p.all;
   }
@@ -94,7 +94,7 @@ static void near_ones_are_not_missed(void) {
 /* A dash that is marked with little around it does not come back. */
 static void may_be_taken_away(void) {
   end = INFINITY;
-  for (int wide = 0; wide < 3; wide++) {
+  for (int wide = 0; wide < some_of(3); wide++) {
     picture truth = draw_road(0);
     task t = task_new(picture_copy(&truth), "surface=flat quality=draft");
     double wrong = 0, inside = 0;
@@ -127,7 +127,7 @@ static void cut_ones_are_made_whole(void) {
              {{90, 300, 230, 440}, {110, 410, 160, 470}},   /* and of one that leans */
              {{250, 430, 390, 450}, {300, 410, 340, 470}}}; /* its middle */
   end = INFINITY, haze = .08;
-  for (int i = 0; i < (int)G_N_ELEMENTS(cut); i++) {
+  for (int i = 0; i < some_of(G_N_ELEMENTS(cut)); i++) {
     picture truth = draw_road(0);
     task t = task_new(picture_copy(&truth), "surface=flat quality=draft");
     t.params.slant_deg = SLANT_DEG;
@@ -157,7 +157,7 @@ static void lines_cut_corners(void) {
 /* A wall's joints come again, too, but they are not all that stands out. */
 static void walls_have_none(void) {
   static const double slants_deg[] = {30, 60}, tilts_deg[] = {0, 45};
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < some_of(4); i++) {
     double slant_deg = slants_deg[i / 2], tilt_deg = tilts_deg[i % 2];
     picture truth = picture_of_plane(400, 300, 1, RECEDE_U8, bricks, 20, slant_deg, tilt_deg);
     task with = task_new(picture_copy(&truth), "quality=draft");

@@ -54,7 +54,7 @@ static point anchor_in(double tilt_deg, int width, int height) {
  * plane is. */
 static void lies_as_the_plane_does(void) {
   static const double tilts_deg[] = {0, 180, 90, -90, 45, -135, 20};
-  for (guint i = 0; i < G_N_ELEMENTS(tilts_deg); i++) {
+  for (int i = 0; i < some_of(G_N_ELEMENTS(tilts_deg)); i++) {
     task t = task_new(slopes(), "slant=50 exemplar=frontal quality=draft engine-iterations=1");
     t.params.tilt_deg = tilts_deg[i];
     task_synthesize(&t, WIDTH, HEIGHT);

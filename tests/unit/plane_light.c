@@ -111,7 +111,7 @@ static double tinted(const picture *p, const picture *mask, bool inside) {
 /* Red flowers do not make the lawn beside them reddish: that is no light. */
 static void colours_are_no_light(void) {
   double most = 0;
-  for (int n = 0; n < 4; n++) {
+  for (int n = 0; n < some_of(4); n++) {
     task t = task_new(lawn(20 + n), "quality=draft orientation=frontal");
     task_hole(&t, (area){90, 60, 200, 180});
     task_succeeds(&t);

@@ -54,7 +54,7 @@ static paint painted(const scene *s, void (*make)(task *t, area hole)) {
 
 static double part_right_in(const scene *scenes, int count, void (*make)(task *t, area hole)) {
   paint sum = {0, 0, 0};
-  for (int i = 0; i < count; i++) {
+  for (int i = 0; i < some_of(count); i++) {
     paint p = painted(&scenes[i], make);
     sum.right += p.right, sum.all += p.all;
   }

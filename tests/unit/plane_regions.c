@@ -76,7 +76,7 @@ static picture most_of_it(void) {
 /* The part of the hole, but for what is so near to an edge, that has the other texture's colour. */
 static double part_wrong(pattern *floor, area hole, int edge_px, const char *settings) {
   double wrong = 0, all = 0;
-  for (int seed = 0; seed < 3; seed++) {
+  for (int seed = 0; seed < some_of(3); seed++) {
     task t = task_new(draw(floor), settings);
     t.params.slant_deg = SLANT_DEG, t.params.seed = seed;
     task_hole(&t, hole);
@@ -161,9 +161,8 @@ static void assert_no_regions(pattern *floor, area hole) {
 
 /* Joints and shades of one texture make no two. */
 static void one_texture_has_none(void) {
-  assert_no_regions(bricks, middle);
-  assert_no_regions(grains, middle);
-  assert_no_regions(lawn, middle);
+  static pattern *const floors[] = {lawn, bricks, grains};
+  for (int i = 0; i < some_of(G_N_ELEMENTS(floors)); i++) assert_no_regions(floors[i], middle);
 }
 
 static void same_for_threads(void) {

@@ -43,7 +43,7 @@ static double order(const picture *p, const picture *squares, const picture *mas
 static double order_kept(const char *settings) {
   double inside = 0, outside = 0;
   picture squares = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, runs_along, 22, SLANT_DEG, 0);
-  for (int seed = 0; seed < 4; seed++) {
+  for (int seed = 0; seed < some_of(4); seed++) {
     picture p = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, parquet, 22, SLANT_DEG, 0);
     task t = task_new(p, settings);
     t.params.slant_deg = SLANT_DEG, t.params.seed = seed;

@@ -128,7 +128,7 @@ static void cut_things_do_not_shine(void) {
 
 /* A line along a fifth of the hole's border: what it misses by must not be its own measure. */
 static void long_things_do_not_shine(void) {
-  for (int n = 0; n < 3; n++) {
+  for (int n = 0; n < some_of(3); n++) {
     double shine = shine_of((area){100, 84, 180, 104}, (area){110, 106, 160, 116},
                             (area){196, 106, 216, 116}, .05 + .05 * n);
     g_assert_cmpfloat(shine, <, .03);
