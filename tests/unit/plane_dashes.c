@@ -28,6 +28,15 @@ static double road(double u, double v, int k) {
   return color + .01 * k;
 }
 
+/* The same road with so few dashes that none of its rows is told: all else is asphalt. */
+static double few_dashes(double u, double v, int k) {
+  static const double dashes[][2] = {{0, -16}, {-LANE, -9}, {LANE, -6}, {-LANE, 3}};
+  double color = .35 + .08 * noise_at((int)floor(u * 12), (int)floor(v * 12), 40);
+  for (int i = 0; i < (int)G_N_ELEMENTS(dashes); i++)
+    if (fabs(u - dashes[i][0]) < .15 && fabs(v - dashes[i][1]) < DASH / 2) color = PAINT;
+  return color + .01 * k;
+}
+
 static picture draw_road(double tilt_deg) {
   return picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, road, TEXEL_PX, SLANT_DEG, tilt_deg);
 }
@@ -145,6 +154,35 @@ static void cut_ones_are_made_whole(void) {
   haze = 0;
 }
 
+/* One that lies in no row, too: as long as the others are. But not where the hole takes it away. */
+static void lone_ones_are_made_whole(void) {
+  static const struct {
+    area hole;
+    bool taken;
+  } cases[] = {{{250, 320, 390, 406}, false}, /* its far end */
+               {{250, 396, 390, 460}, false}, /* its near one */
+               {{309, 375, 332, 428}, true}};
+  static const area dash = {300, 370, 340, 430};
+  picture truth = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, few_dashes, TEXEL_PX, SLANT_DEG, 0);
+  for (int i = 0; i < some_of(G_N_ELEMENTS(cases)); i++) {
+    task t = task_new(picture_copy(&truth), "surface=flat quality=draft");
+    t.params.slant_deg = SLANT_DEG;
+    task_hole(&t, cases[i].hole);
+    task_succeeds(&t);
+    task_assert_outside(&t);
+    paint p = task_paint(&t, &truth, dash);
+    g_test_message("hole at %d,%d: %.0f of %.0f px", cases[i].hole.x0, cases[i].hole.y0, p.right,
+                   p.all);
+    task_clear(&t);
+    g_assert_cmpfloat(p.all, >, 100);
+    if (cases[i].taken)
+      g_assert_cmpfloat(p.right, <, 20);
+    else
+      g_assert_cmpfloat(p.right, >, .8 * p.all);
+  }
+  picture_clear(&truth);
+}
+
 /* A line that cuts a corner off a hole leaves it at flat angles. */
 static void lines_cut_corners(void) {
   static const area hole = {420, 180, 560, 300};
@@ -182,6 +220,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/dashes/near", near_ones_are_not_missed);
   g_test_add_func("/dashes/away", may_be_taken_away);
   g_test_add_func("/dashes/cut", cut_ones_are_made_whole);
+  g_test_add_func("/dashes/lone", lone_ones_are_made_whole);
   g_test_add_func("/dashes/corner", lines_cut_corners);
   g_test_add_func("/dashes/walls", walls_have_none);
   return g_test_run();

@@ -56,37 +56,42 @@ static bool off_away(const chooser *c, int x, int y, double du, double dv, int r
   return true;
 }
 
-static rc_box box_of(const chooser *c, const rc_dash_row *row, int n) {
-  rc_box all = {0, 0, c->flags->width, c->flags->height};
-  return rc_dash_box(c->ground, row, n, c->exponent, PART_ALONG, PART_ACROSS, 0, all);
+static rc_box box_of(const rc_ground *ground, const rc_mask *flags, int exponent,
+                     const rc_dash_row *row, int n) {
+  rc_box all = {0, 0, flags->width, flags->height};
+  return rc_dash_box(ground, row, n, exponent, PART_ALONG, PART_ACROSS, 0, all);
 }
 
-static bool is_within(const chooser *c, const rc_dash_row *row, int n, int x, int y) {
+static bool is_within(const rc_ground *ground, int exponent, const rc_dash_row *row, int n, int x,
+                      int y) {
   double u, v, w;
-  return rc_ground_place(c->ground, c->exponent, x, y, &u, &v, &w) &&
+  return rc_ground_place(ground, exponent, x, y, &u, &v, &w) &&
          fabs(rc_dash_along(row, u, v) - rc_dash_place(row, n)) < .5 * PART_ALONG * row->length &&
          fabs(rc_dash_across(row, u, v)) < .5 * PART_ACROSS * row->width;
 }
 
-static bool is_hidden(const chooser *c, const rc_dash_row *row, int n) {
-  rc_box box = box_of(c, row, n);
+bool rc_dash_is_hidden(const rc_ground *ground, const rc_mask *flags, int exponent,
+                       const rc_dash_row *row, int n) {
+  rc_box box = box_of(ground, flags, exponent, row, n);
   for (int y = box.y0; y < box.y1; y++)
     for (int x = box.x0; x < box.x1; x++)
-      if (*rc_flag(c->flags, x, y) & RC_TARGET && is_within(c, row, n, x, y)) return true;
+      if (*rc_flag(flags, x, y) & RC_TARGET && is_within(ground, exponent, row, n, x, y))
+        return true;
   return false;
 }
 
-static bool is_to_go(const chooser *c, const rc_dash_row *row, int n) {
+bool rc_dash_is_to_go(const rc_ground *ground, const rc_mask *flags, int exponent,
+                      const rc_dash_row *row, int n) {
   double hidden[2] = {0, 0}, all[2] = {0, 0}, x, y, w; /* around it, and of it */
   for (int k = 0; k < PLACES * PLACES; k++) {
     double t = (k % PLACES + .5) / PLACES - .5, side = (k / PLACES + .5) / PLACES - .5;
     t *= row->length + 2 * AROUND * row->width, side *= (1 + 2 * AROUND) * row->width;
     double along = rc_dash_place(row, n) + t;
     bool own = fabs(t) < .5 * row->length && fabs(side) < .5 * row->width;
-    if (!rc_dash_px(c->ground, c->exponent, row, along, side, &x, &y, &w)) continue;
+    if (!rc_dash_px(ground, exponent, row, along, side, &x, &y, &w)) continue;
     int px = (int)floor(x + .5), py = (int)floor(y + .5);
-    if (!rc_inside(c->flags->width, c->flags->height, px, py)) continue;
-    all[own]++, hidden[own] += (*rc_flag(c->flags, px, py) & RC_TARGET) != 0;
+    if (!rc_inside(flags->width, flags->height, px, py)) continue;
+    all[own]++, hidden[own] += (*rc_flag(flags, px, py) & RC_TARGET) != 0;
   }
   return all[0] > 0 && all[1] > 0 && hidden[1] / all[1] - hidden[0] / all[0] > FOLLOWS;
 }
@@ -97,10 +102,12 @@ static double misfit_of(const chooser *c, const rc_dash_row *row, int n, double 
                         int right, int down) {
   double squares = 0, here, there;
   int seen = 0, wanted = 0;
-  rc_box box = box_of(c, row, n);
+  rc_box box = box_of(c->ground, c->flags, c->exponent, row, n);
   for (int y = box.y0; y < box.y1; y++)
     for (int x = box.x0; x < box.x1; x++) {
-      if (!is_within(c, row, n, x, y) || !rc_dashes_off(c->dashes, x, y, &here)) continue;
+      if (!is_within(c->ground, c->exponent, row, n, x, y) ||
+          !rc_dashes_off(c->dashes, x, y, &here))
+        continue;
       wanted++;
       if (!off_away(c, x, y, du, dv, right, down, &there)) continue;
       squares += (here - there) * (here - there), seen++;
@@ -218,7 +225,9 @@ recede_status rc_dash_rows_choose(rc_context *context, const rc_dashes *dashes,
     for (int n = row->low; n <= row->high && row->laid_count < RC_MOST_IN_ROW; n++) {
       rc_dash_laid laid = {.number = n};
       RC_TRY(rc_poll(context));
-      if (!is_hidden(&c, row, n) || is_to_go(&c, row, n)) continue;
+      if (!rc_dash_is_hidden(&rows->ground, flags, exponent, row, n) ||
+          rc_dash_is_to_go(&rows->ground, flags, exponent, row, n))
+        continue;
       if (choose(&c, rows, row, n, &laid))
         row->laid[row->laid_count++] = laid;
       else if (rows->count < RC_MOST_DASH_ROWS)

@@ -55,10 +55,10 @@ static bool is_seen_in(const rc_dash_row *row, const rc_dash *d) {
          rc_dash_lies_on(row, d->u, d->v, d->w);
 }
 
-/* The row's dash that is seen next to a place along it, but not beside it, or NULL. */
-static const rc_dash *find_next(const rc_dashes *dashes, const rc_dash_row *row, double t) {
+const rc_dash *rc_dash_next(const rc_dashes *dashes, const rc_dash_row *row,
+                            const rc_dash_rest *rest) {
   const rc_dash *next = NULL;
-  double least = INFINITY;
+  double least = INFINITY, t = rc_dash_along(row, rest->u, rest->v);
   for (int i = 0; i < dashes->count; i++) {
     const rc_dash *d = &dashes->found[i];
     double off = fabs(rc_dash_along(row, d->u, d->v) - t);
@@ -173,8 +173,7 @@ static void straighten(const rc_dashes *dashes, const rc_ground *ground, int exp
 
 bool rc_dash_alone(const rc_dashes *dashes, const rc_ground *ground, const rc_mask *flags,
                    int exponent, const rc_dash_row *row, double length, const rc_dash_rest *rest,
-                   rc_dash_row *own) {
-  const rc_dash *next = find_next(dashes, row, rc_dash_along(row, rest->u, rest->v));
+                   const rc_dash *next, rc_dash_row *own) {
   *own = row_of(row, length, rest, next);
   double copied = length_to_copy(ground, flags, exponent, own, rest->length);
   if (!next && copied > 0) {
@@ -198,7 +197,8 @@ bool rc_dash_of_rest(const rc_dashes *dashes, const rc_dash_rows *rows, const rc
   for (int i = 0; i < 2; i++) {
     rc_dash_row alone;
     if (!(rests[i].length > 0) ||
-        !rc_dash_alone(dashes, &rows->ground, flags, exponent, row, length, &rests[i], &alone) ||
+        !rc_dash_alone(dashes, &rows->ground, flags, exponent, row, length, &rests[i],
+                       rc_dash_next(dashes, row, &rests[i]), &alone) ||
         alone.laid[0].rest < most)
       continue;
     most = alone.laid[0].rest;

@@ -12,6 +12,10 @@
 /* What makes dashes of one row, or of rows side by side, alike. */
 #define RC_DASHES_MOST_LONGER 1.6
 #define RC_DASHES_PARALLEL .99 /* cosine of 8 degrees */
+/* Sine of what a dash's own direction may be off its row's, and so much of its width to its length
+ * more: the longer it is the better it tells where its row leads. */
+#define RC_DASHES_OFF_DIRECTION .035
+#define RC_DASHES_OFF_BY_WIDTH .5
 /* They lie on its line within this part of their length, and so many px of the finest level. */
 #define RC_DASHES_OFF_LINE .1
 #define RC_DASHES_OFF_LINE_PX 1.5
@@ -50,6 +54,12 @@ static inline bool rc_dashes_alike(const rc_dash_row *row, double length, double
          fabs(a * row->a + b * row->b) > RC_DASHES_PARALLEL;
 }
 
+/* How far a dash's own direction is off its row's, as a part of what may be. */
+static inline double rc_dash_turn(const rc_dash_row *row, const rc_dash *d) {
+  return fabs(d->a * row->b - d->b * row->a) /
+         (RC_DASHES_OFF_DIRECTION + RC_DASHES_OFF_BY_WIDTH * d->width / d->length);
+}
+
 static inline bool rc_dash_lies_on(const rc_dash_row *row, double u, double v, double w) {
   return fabs(rc_dash_across(row, u, v)) <
          RC_DASHES_OFF_LINE * row->length + RC_DASHES_OFF_LINE_PX / w;
@@ -66,11 +76,14 @@ typedef struct rc_dash_rest {
 bool rc_dash_rest_of(const rc_dash_row *row, const rc_dash *dash, rc_dash_rest *rest);
 /* Where the middle of the whole one lies. */
 void rc_dash_rest_middle(const rc_dash_row *row, const rc_dash_rest *rest, double *u, double *v);
-/* A row of that dash alone, so long, as the rest lies: from the end that is seen to where the other
- * is due. False: too little of it may be copied. */
+/* The row's dash that is seen next to it, or NULL. */
+const rc_dash *rc_dash_next(const rc_dashes *dashes, const rc_dash_row *row,
+                            const rc_dash_rest *rest);
+/* A row of that dash alone, so long, towards the next one or, without one, as the rest lies: from
+ * the end that is seen to where the other is due. False: too little of it may be copied. */
 bool rc_dash_alone(const rc_dashes *dashes, const rc_ground *ground, const rc_mask *flags,
                    int exponent, const rc_dash_row *row, double length, const rc_dash_rest *rest,
-                   rc_dash_row *own);
+                   const rc_dash *next, rc_dash_row *own);
 /* A row's n-th alone, made of its own rest. False: there is none, or too little of it may be
  * copied. */
 bool rc_dash_of_rest(const rc_dashes *dashes, const rc_dash_rows *rows, const rc_mask *flags,
@@ -79,6 +92,12 @@ bool rc_dash_of_rest(const rc_dashes *dashes, const rc_dash_rows *rows, const rc
 /* Around a row's n-th, so many times as long and wide and a margin more, px of a level. */
 rc_box rc_dash_box(const rc_ground *ground, const rc_dash_row *row, int n, int exponent,
                    double times_along, double times_across, double margin_px, rc_box within);
+/* Whether the hole hides something of a row's n-th. */
+bool rc_dash_is_hidden(const rc_ground *ground, const rc_mask *flags, int exponent,
+                       const rc_dash_row *row, int n);
+/* Whether the hole is there to take a row's n-th away. */
+bool rc_dash_is_to_go(const rc_ground *ground, const rc_mask *flags, int exponent,
+                      const rc_dash_row *row, int n);
 /* Chooses what is laid into the hole, of rows that are found: dashes of a size that will do and, of
  * one that is seen in part, such that fit that. Where none does, a row of that one alone is added,
  * made of its rest. */

@@ -5,7 +5,7 @@
 #include "base/cholesky.h"
 #include "base/memory.h"
 #include "base/spread.h"
-#include "synthesis/structure/dash_sight.h"
+#include "synthesis/structure/dash_lone.h"
 
 /* Dashes lie where they are due within this part of the period, less strictly while the ground is
  * not known; far away, so many px of the level and at the most this part. */
@@ -40,7 +40,8 @@ static bool lies_on(const rc_dash_row *row, const rc_dash *d) {
 /* Whether it is wholly seen where the row's n-th is due. */
 static bool is_one_of(const finder *f, const rc_dash_row *row, const rc_dash *d, int *n) {
   double t = rc_dash_along(row, d->u, d->v), x, y, due_x, due_y, w;
-  if (!d->complete || !rc_dashes_alike(row, d->length, d->a, d->b) || !lies_on(row, d))
+  if (!d->complete || !rc_dashes_alike(row, d->length, d->a, d->b) || rc_dash_turn(row, d) > 1 ||
+      !lies_on(row, d))
     return false;
   *n = rc_dash_number(row, t);
   double due = rc_dash_place(row, *n), period = fabs(rc_dash_place(row, *n + 1) - due);
@@ -167,8 +168,9 @@ static recede_status find_longest(rc_context *context, const finder *f, const rc
       if (!p->complete || !q->complete || is_taken(rows, p) || is_taken(rows, q)) continue;
       rc_dash_row row = row_between(p, q);
       if (!rc_dashes_alike(&row, p->length, p->a, p->b) ||
-          !rc_dashes_alike(&row, q->length, q->a, q->b) ||
-          row.period < SHORTEST_PERIOD * row.length || row.period > LONGEST_PERIOD * row.length)
+          !rc_dashes_alike(&row, q->length, q->a, q->b) || rc_dash_turn(&row, p) > 1 ||
+          rc_dash_turn(&row, q) > 1 || row.period < SHORTEST_PERIOD * row.length ||
+          row.period > LONGEST_PERIOD * row.length)
         continue;
       grow(f, &row);
       if (row.seen_count > best->seen_count && find_ends(f, &row)) *best = row;
@@ -194,7 +196,7 @@ static void follow_rest(const finder *f, const rc_dash *d, rc_dash_row *row) {
   rc_dash_row own;
   if (!rc_dash_rest_of(row, d, &rest) ||
       !rc_dash_alone(&f->sight.dashes, &f->sight.ground, f->flags, f->sight.exponent, row,
-                     row->length, &rest, &own))
+                     row->length, &rest, rc_dash_next(&f->sight.dashes, row, &rest), &own))
     return;
   row->u = own.u, row->v = own.v;
   row->a = own.a * rest.towards, row->b = own.b * rest.towards;
@@ -257,7 +259,10 @@ static recede_status try_horizons(rc_context *context, finder *f, rc_dash_rows *
   }
   f->sight.ground = best;
   *any = most > 0;
-  if (!*any) rows->count = 0;
+  if (*any) return RECEDE_OK;
+  rows->count = 0;
+  rows->ground = said;
+  f->sight.dashes = seen;
   return RECEDE_OK;
 }
 
@@ -279,6 +284,7 @@ recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, cons
   }
   find_beside(&f, rows);
   RC_TRY(rc_dash_rows_choose(context, &f.sight.dashes, flags, exponent, rows));
+  RC_TRY(rc_dash_rows_add_lone(context, &f.sight, flags, rows));
   rc_release(context, mark);
   return rc_poll(context);
 }
