@@ -89,6 +89,7 @@ recede_status rc_dash_rows_add_lone(rc_context *context, const rc_dash_sight *si
     if (!like) continue;
     const rc_dash *next = aim(dashes, like, &row);
     if (!rc_dash_row_is_plain(sight, &row, 0, 0) ||
+        !rc_dash_is_on_plain(sight, &row, rest.length) ||
         !rc_dash_alone(dashes, &sight->ground, flags, sight->exponent, &row, row.length, &rest,
                        next, &own) ||
         !rc_dash_is_hidden(&sight->ground, flags, sight->exponent, &own, 0) ||

@@ -13,6 +13,9 @@
 #define STEPS_ACROSS 12
 #define LEAST_ACROSS .6
 #define SAMPLES 32
+/* To its sides, so many of its widths off its middle, the ground is as plain. */
+#define BESIDE 1.5
+#define MOST_PART_BESIDE .25
 /* Shorter ones of the level could be missed. */
 #define LEAST_SEEN_PX 4.
 
@@ -76,6 +79,14 @@ static bool is_crossed(const rc_dash_sight *s, const rc_dash_row *row, int n, do
     if (l.seen >= SAMPLES / 4 && l.stands_out > LEAST_ACROSS * l.seen) return true;
   }
   return false;
+}
+
+bool rc_dash_is_on_plain(const rc_dash_sight *s, const rc_dash_row *row, double length) {
+  looked l = {0, 0};
+  for (int k = 0; k < 2 * SAMPLES; k++)
+    look(s, row, length * ((k / 2 + .5) / SAMPLES - .5), (k % 2 ? BESIDE : -BESIDE) * row->width,
+         &l);
+  return l.stands_out <= MOST_PART_BESIDE * l.seen;
 }
 
 bool rc_dash_row_is_plain(const rc_dash_sight *s, const rc_dash_row *row, int first, int last) {
