@@ -183,6 +183,27 @@ static void lone_ones_are_made_whole(void) {
   picture_clear(&truth);
 }
 
+/* A line that ends as far beyond the hole as a dash would is none. */
+static double line_and_dashes(double u, double v, int k) {
+  return fabs(u - 2 * LANE) < .15 && v > -14.6 ? PAINT : few_dashes(u, v, k);
+}
+
+static void ends_of_lines_are_none(void) {
+  static const area hole = {490, 260, 630, 352};
+  picture truth =
+      picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, line_and_dashes, TEXEL_PX, SLANT_DEG, 0);
+  task t = task_new(picture_copy(&truth), "surface=flat quality=draft");
+  t.params.slant_deg = SLANT_DEG;
+  task_hole(&t, hole);
+  task_succeeds(&t);
+  paint p = task_paint(&t, &truth, hole);
+  g_test_message("%.0f of %.0f px", p.right, p.all);
+  g_assert_cmpfloat(p.all, >, 400);
+  g_assert_cmpfloat(p.right, >, .9 * p.all);
+  task_clear(&t);
+  picture_clear(&truth);
+}
+
 /* A line that cuts a corner off a hole leaves it at flat angles. */
 static void lines_cut_corners(void) {
   static const area hole = {420, 180, 560, 300};
@@ -221,6 +242,7 @@ int main(int argc, char **argv) {
   g_test_add_func("/dashes/away", may_be_taken_away);
   g_test_add_func("/dashes/cut", cut_ones_are_made_whole);
   g_test_add_func("/dashes/lone", lone_ones_are_made_whole);
+  g_test_add_func("/dashes/line", ends_of_lines_are_none);
   g_test_add_func("/dashes/corner", lines_cut_corners);
   g_test_add_func("/dashes/walls", walls_have_none);
   return g_test_run();

@@ -70,6 +70,18 @@ static const rc_dash *aim(const rc_dashes *dashes, const rc_dash *like, rc_dash_
   return next;
 }
 
+/* Whether the hole cuts something longer than a dash on its line: then it is a piece of that. */
+static bool is_of_line(const rc_dashes *dashes, const rc_dash_row *row) {
+  for (int i = 0; i < dashes->count; i++) {
+    const rc_dash *d = &dashes->found[i];
+    if (!d->complete && d->length > RC_DASHES_MOST_LONGER * row->length &&
+        fabs(d->a * row->a + d->b * row->b) > RC_DASHES_PARALLEL &&
+        rc_dash_lies_on(row, d->u, d->v, d->w))
+      return true;
+  }
+  return false;
+}
+
 /* Whether a dash that is laid, or that somebody took away, lies there. */
 static bool is_known(const rc_dash_rows *rows, const rc_dash *d) {
   for (int i = 0; i < rows->count; i++)
@@ -88,7 +100,7 @@ recede_status rc_dash_rows_add_lone(rc_context *context, const rc_dash_sight *si
         d->complete || is_known(rows, d) ? NULL : whole_of(dashes, d, &row, &rest);
     if (!like) continue;
     const rc_dash *next = aim(dashes, like, &row);
-    if (!rc_dash_row_is_plain(sight, &row, 0, 0) ||
+    if (is_of_line(dashes, &row) || !rc_dash_row_is_plain(sight, &row, 0, 0) ||
         !rc_dash_is_on_plain(sight, &row, rest.length) ||
         !rc_dash_alone(dashes, &sight->ground, flags, sight->exponent, &row, row.length, &rest,
                        next, &own) ||
