@@ -124,8 +124,8 @@ static recede_status find_lines(rc_context *context, const rc_dash_rows *dashes,
   /* A rail does not come again where its sleepers do. */
   e->due = e->due && !rc_crossings_have_lone(e->lines, e->line_count);
   /* Where there are dashes it is they that repeat, not what the lines lie on. */
-  RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, from, &e->chart,
-                       !dashes->count, e->lines, &e->line_count, &e->rails));
+  RC_TRY(rc_rails_find(context, e->images, e->flags, e->level_count, from, &e->chart, !dashes->told,
+                       e->lines, &e->line_count, &e->rails));
   if (e->params->engine_boundary && !e->due)
     RC_TRY(rc_boundary_find(context, e->images, e->flags, e->level_count, from, &e->chart, e->lines,
                             &e->line_count, &e->rails, &e->sides));

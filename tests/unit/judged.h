@@ -10,7 +10,7 @@
 #define SANITIZED 0
 #endif
 
-/* How many of so many tasks that all run the same code: the first alone under sanitizers. */
+/* How many of so many tasks that run nearly the same code: the first alone under sanitizers. */
 static inline int some_of(int count) { return SANITIZED ? 1 : count; }
 
 /* A test that judges what many fills or readings look like, or counts their bytes: none under

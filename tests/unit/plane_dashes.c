@@ -161,16 +161,16 @@ static void lone_ones_are_made_whole(void) {
     bool taken;
   } cases[] = {{{250, 320, 390, 406}, false}, /* its far end */
                {{250, 396, 390, 460}, false}, /* its near one */
+               {{250, 394, 390, 408}, false}, /* its middle */
                {{309, 375, 332, 428}, true}};
-  static const area dash = {300, 370, 340, 430};
   picture truth = picture_of_plane(WIDTH, HEIGHT, 1, RECEDE_U8, few_dashes, TEXEL_PX, SLANT_DEG, 0);
-  for (int i = 0; i < some_of(G_N_ELEMENTS(cases)); i++) {
+  for (guint i = 0; i < G_N_ELEMENTS(cases); i++) {
     task t = task_new(picture_copy(&truth), "surface=flat quality=draft");
     t.params.slant_deg = SLANT_DEG;
     task_hole(&t, cases[i].hole);
     task_succeeds(&t);
     task_assert_outside(&t);
-    paint p = task_paint(&t, &truth, dash);
+    paint p = task_paint(&t, &truth, cases[i].hole);
     g_test_message("hole at %d,%d: %.0f of %.0f px", cases[i].hole.x0, cases[i].hole.y0, p.right,
                    p.all);
     task_clear(&t);

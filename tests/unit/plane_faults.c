@@ -85,7 +85,7 @@ static void unusable_is_counted_and_never_a_source(void) {
   static const float values[] = {-INFINITY, 3e38f, -2e9f};
   for (guint m = 0; m < G_N_ELEMENTS(settings); m++) {
     picture first = fill_beside_unusable(NAN, 1, settings[m]);
-    for (int i = 0; i < some_of(G_N_ELEMENTS(values)); i++) {
+    for (guint i = 0; i < G_N_ELEMENTS(values); i++) {
       picture other = fill_beside_unusable(values[i], 1, settings[m]);
       assert_same(&first, &other);
       picture_clear(&other);

@@ -3,8 +3,12 @@
 /* As long as one that is wholly seen, of at least this part of its contrast, and is not alone of
  * its kind: the nearest to the viewer, for far ones get longer by their blur. */
 #define LEAST_OF_CONTRAST .5
-/* Nothing stands out before the next would come, so many lengths on at the least. */
+/* The next one comes at least so many lengths on, and nothing stands out before. */
 #define LEAST_PERIOD 2.
+/* One that is so many lengths away, and no longer than by so much - it is blurred -, tells where it
+ * leads; farther ones may be the next lane's. */
+#define MOST_AWAY 10.
+#define MOST_LONGER 3.
 
 static bool is_model(const rc_dash *of, const rc_dash *d) {
   return of->complete && of->contrast > LEAST_OF_CONTRAST * d->contrast;
@@ -33,7 +37,7 @@ static bool is_one_of_some(const rc_dashes *dashes, const rc_dash *of, const rc_
   return false;
 }
 
-/* The dash that this is a rest of, by others, and the one that it is like; NULL: there is none. */
+/* The dash whose rest this is, as the one that is returned shows; NULL: none does. */
 static const rc_dash *whole_of(const rc_dashes *dashes, const rc_dash *d, rc_dash_row *row,
                                rc_dash_rest *rest) {
   const rc_dash *like = NULL;
@@ -49,8 +53,8 @@ static const rc_dash *whole_of(const rc_dashes *dashes, const rc_dash *d, rc_das
   return like;
 }
 
-/* Turns a row through the rest of a dash to the one that leads to it best, and returns that; NULL:
- * none does. like: that leads as it does. */
+/* Turns a row through the rest of a dash towards another whose own direction fits best, and returns
+ * that; NULL: none does. like: the dash that the row's are like, whose direction must fit, too. */
 static const rc_dash *aim(const rc_dashes *dashes, const rc_dash *like, rc_dash_row *row) {
   const rc_dash *next = NULL;
   rc_dash_row best = *row;
@@ -58,34 +62,62 @@ static const rc_dash *aim(const rc_dashes *dashes, const rc_dash *like, rc_dash_
   for (int i = 0; i < dashes->count; i++) {
     const rc_dash *d = &dashes->found[i];
     double du = d->u - row->u, dv = d->v - row->v, far = rc_distance(du, dv);
-    if (!d->complete || far < row->length) continue;
+    if (!d->complete || far < row->length || far > MOST_AWAY * row->length) continue;
     rc_dash_row to = *row;
     double sign = du * row->a + dv * row->b < 0 ? -1 : 1;
     to.a = sign * du / far, to.b = sign * dv / far;
     double turn = fmax(rc_dash_turn(&to, d), rc_dash_turn(&to, like));
-    if (turn < least && d->length * RC_DASHES_MOST_LONGER > row->length)
+    if (turn < least && d->length * RC_DASHES_MOST_LONGER > row->length &&
+        d->length < MOST_LONGER * row->length)
       least = turn, best = to, next = d;
   }
   *row = best;
   return next;
 }
 
-/* Whether the hole cuts something longer than a dash on its line: then it is a piece of that. */
-static bool is_of_line(const rc_dashes *dashes, const rc_dash_row *row) {
+/* The other rest of the dash whose rest this is, if the hole hides its middle, or NULL; sets the
+ * row's length to the whole one's. */
+static const rc_dash *find_other(const rc_dashes *dashes, const rc_dash_rest *rest,
+                                 rc_dash_row *row) {
   for (int i = 0; i < dashes->count; i++) {
     const rc_dash *d = &dashes->found[i];
-    if (!d->complete && d->length > RC_DASHES_MOST_LONGER * row->length &&
-        fabs(d->a * row->a + d->b * row->b) > RC_DASHES_PARALLEL &&
-        rc_dash_lies_on(row, d->u, d->v, d->w))
+    double far = rest->towards * rc_dash_along(row, d->u, d->v);
+    rc_dash_rest other;
+    if (d->complete || !(far > 0) || !rc_dash_lies_on(row, d->u, d->v, d->w) ||
+        !rc_dash_rest_of(row, d, &other) || other.towards == rest->towards)
+      continue;
+    double length = far + (rest->length + other.length) / 2;
+    if (length > RC_DASHES_MOST_LONGER * row->length) continue;
+    row->length = length;
+    return d;
+  }
+  return NULL;
+}
+
+/* Whether the hole cuts something longer than a dash on whose line it lies: then it is a piece of
+ * that. */
+static bool is_of_line(const rc_dashes *dashes, const rc_dash *d, const rc_dash_row *row) {
+  for (int i = 0; i < dashes->count; i++) {
+    const rc_dash *line = &dashes->found[i];
+    rc_dash_row along = row_like(line, line);
+    along.length = row->length;
+    if (!line->complete && line->length > RC_DASHES_MOST_LONGER * row->length &&
+        fabs(line->a * row->a + line->b * row->b) > RC_DASHES_PARALLEL &&
+        rc_dash_lies_on(&along, d->u, d->v, d->w))
       return true;
   }
   return false;
 }
 
-/* Whether a dash that is laid, or that somebody took away, lies there. */
+/* Whether it is one of a row that was chosen from, or a part of one that lies alone. */
 static bool is_known(const rc_dash_rows *rows, const rc_dash *d) {
-  for (int i = 0; i < rows->count; i++)
-    if (rc_dash_lies_on(&rows->rows[i], d->u, d->v, d->w)) return true;
+  for (int i = 0; i < rows->count; i++) {
+    const rc_dash_row *row = &rows->rows[i];
+    double off = fabs(rc_dash_along(row, d->u, d->v) - rc_dash_place(row, row->low));
+    if (rc_dash_lies_on(row, d->u, d->v, d->w) &&
+        (row->low < row->high || off < (row->length + d->length) / 2))
+      return true;
+  }
   return false;
 }
 
@@ -93,14 +125,16 @@ recede_status rc_dash_rows_add_lone(rc_context *context, const rc_dash_sight *si
                                     const rc_mask *flags, rc_dash_rows *rows) {
   const rc_dashes *dashes = &sight->dashes;
   for (int i = 0; i < dashes->count && rows->count < RC_MOST_DASH_ROWS; i++) {
+    RC_TRY(rc_poll(context));
     const rc_dash *d = &dashes->found[i];
     rc_dash_row row, own;
     rc_dash_rest rest;
     const rc_dash *like =
         d->complete || is_known(rows, d) ? NULL : whole_of(dashes, d, &row, &rest);
     if (!like) continue;
-    const rc_dash *next = aim(dashes, like, &row);
-    if (is_of_line(dashes, &row) || !rc_dash_row_is_plain(sight, &row, 0, 0) ||
+    const rc_dash *next = find_other(dashes, &rest, &row);
+    if (!next) next = aim(dashes, like, &row);
+    if (is_of_line(dashes, d, &row) || !rc_dash_row_is_plain(sight, &row, 0, 0) ||
         !rc_dash_is_on_plain(sight, &row, rest.length) ||
         !rc_dash_alone(dashes, &sight->ground, flags, sight->exponent, &row, row.length, &rest,
                        next, &own) ||

@@ -51,8 +51,7 @@ static bool is_of(const rc_dash_row *row, int n, const rc_dash *d, rc_dash_rest 
 }
 
 static bool is_seen_in(const rc_dash_row *row, const rc_dash *d) {
-  return d->complete && rc_dashes_alike(row, d->length, d->a, d->b) &&
-         rc_dash_lies_on(row, d->u, d->v, d->w);
+  return d->complete && rc_dash_is_like(row, d) && rc_dash_lies_on(row, d->u, d->v, d->w);
 }
 
 const rc_dash *rc_dash_next(const rc_dashes *dashes, const rc_dash_row *row,

@@ -60,6 +60,11 @@ static inline double rc_dash_turn(const rc_dash_row *row, const rc_dash *d) {
          (RC_DASHES_OFF_DIRECTION + RC_DASHES_OFF_BY_WIDTH * d->width / d->length);
 }
 
+/* Whether it may be of the row, or of one beside it, and leads as that does. */
+static inline bool rc_dash_is_like(const rc_dash_row *row, const rc_dash *d) {
+  return rc_dashes_alike(row, d->length, d->a, d->b) && rc_dash_turn(row, d) <= 1;
+}
+
 static inline bool rc_dash_lies_on(const rc_dash_row *row, double u, double v, double w) {
   return fabs(rc_dash_across(row, u, v)) <
          RC_DASHES_OFF_LINE * row->length + RC_DASHES_OFF_LINE_PX / w;

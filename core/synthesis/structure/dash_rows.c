@@ -40,9 +40,7 @@ static bool lies_on(const rc_dash_row *row, const rc_dash *d) {
 /* Whether it is wholly seen where the row's n-th is due. */
 static bool is_one_of(const finder *f, const rc_dash_row *row, const rc_dash *d, int *n) {
   double t = rc_dash_along(row, d->u, d->v), x, y, due_x, due_y, w;
-  if (!d->complete || !rc_dashes_alike(row, d->length, d->a, d->b) || rc_dash_turn(row, d) > 1 ||
-      !lies_on(row, d))
-    return false;
+  if (!d->complete || !rc_dash_is_like(row, d) || !lies_on(row, d)) return false;
   *n = rc_dash_number(row, t);
   double due = rc_dash_place(row, *n), period = fabs(rc_dash_place(row, *n + 1) - due);
   if (!isfinite(due)) return false;
@@ -167,10 +165,8 @@ static recede_status find_longest(rc_context *context, const finder *f, const rc
       const rc_dash *p = &f->sight.dashes.found[i], *q = &f->sight.dashes.found[k];
       if (!p->complete || !q->complete || is_taken(rows, p) || is_taken(rows, q)) continue;
       rc_dash_row row = row_between(p, q);
-      if (!rc_dashes_alike(&row, p->length, p->a, p->b) ||
-          !rc_dashes_alike(&row, q->length, q->a, q->b) || rc_dash_turn(&row, p) > 1 ||
-          rc_dash_turn(&row, q) > 1 || row.period < SHORTEST_PERIOD * row.length ||
-          row.period > LONGEST_PERIOD * row.length)
+      if (!rc_dash_is_like(&row, p) || !rc_dash_is_like(&row, q) ||
+          row.period < SHORTEST_PERIOD * row.length || row.period > LONGEST_PERIOD * row.length)
         continue;
       grow(f, &row);
       if (row.seen_count > best->seen_count && find_ends(f, &row)) *best = row;
@@ -184,7 +180,7 @@ static recede_status find_longest(rc_context *context, const finder *f, const rc
 static bool middle_of(const rc_dash_row *row, const rc_dash *d, double *u, double *v) {
   rc_dash_rest rest;
   *u = d->u, *v = d->v;
-  if (d->complete) return rc_dashes_alike(row, d->length, d->a, d->b);
+  if (d->complete) return rc_dash_is_like(row, d);
   if (!rc_dash_rest_of(row, d, &rest)) return false;
   rc_dash_rest_middle(row, &rest, u, v);
   return true;
@@ -259,10 +255,7 @@ static recede_status try_horizons(rc_context *context, finder *f, rc_dash_rows *
   }
   f->sight.ground = best;
   *any = most > 0;
-  if (*any) return RECEDE_OK;
-  rows->count = 0;
-  rows->ground = said;
-  f->sight.dashes = seen;
+  if (!*any) rows->count = 0;
   return RECEDE_OK;
 }
 
@@ -272,8 +265,10 @@ recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, cons
   f.reach = (double)(rc_longer_side(rc_box_of(flags, RC_TARGET)) << exponent) / 2;
   rc_block *mark = rc_mark(context);
   RC_TRY(rc_dashes_find(context, image, flags, ground, exponent, &f.sight.dashes));
-  bool any = false;
+  const rc_dashes said = f.sight.dashes;
+  bool any = false, again;
   RC_TRY(try_horizons(context, &f, rows, &any));
+  again = any;
   for (int i = 0; i <= CORRECTIONS && any; i++) {
     f.drifts = i < CORRECTIONS;
     rc_release(context, mark);
@@ -282,8 +277,15 @@ recede_status rc_dash_rows_find(rc_context *context, const rc_image *image, cons
     any = rows->count > 0;
     if (f.drifts && any && !correct(&f, rows->rows, &f.sight.ground)) i = CORRECTIONS - 1;
   }
+  if (!any) { /* the ground that was said stands */
+    f.sight.ground = rows->ground = *ground;
+    f.sight.dashes = said;
+    if (again) rc_release(context, mark);
+    if (again) RC_TRY(rc_dashes_find(context, image, flags, ground, exponent, &f.sight.dashes));
+  }
   find_beside(&f, rows);
   RC_TRY(rc_dash_rows_choose(context, &f.sight.dashes, flags, exponent, rows));
+  rows->told = rows->count;
   RC_TRY(rc_dash_rows_add_lone(context, &f.sight, flags, rows));
   rc_release(context, mark);
   return rc_poll(context);

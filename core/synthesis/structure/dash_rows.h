@@ -37,7 +37,7 @@ typedef struct rc_dash_row {
 typedef struct rc_dash_rows {
   rc_ground ground; /* turned by what they show */
   rc_dash_row rows[RC_MOST_DASH_ROWS];
-  int count;
+  int count, told; /* all; those of more than a dash that lies alone, the first */
 } rc_dash_rows;
 
 /* image and flags: a level 2^exponent times coarser than the finest. */

@@ -86,7 +86,7 @@ bool rc_dash_is_on_plain(const rc_dash_sight *s, const rc_dash_row *row, double 
   for (int k = 0; k < 2 * SAMPLES; k++)
     look(s, row, length * ((k / 2 + .5) / SAMPLES - .5), (k % 2 ? BESIDE : -BESIDE) * row->width,
          &l);
-  return l.stands_out <= MOST_PART_BESIDE * l.seen;
+  return l.seen >= SAMPLES / 2 && l.stands_out <= MOST_PART_BESIDE * l.seen;
 }
 
 bool rc_dash_row_is_plain(const rc_dash_sight *s, const rc_dash_row *row, int first, int last) {
