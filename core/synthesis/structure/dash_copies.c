@@ -55,6 +55,10 @@ void rc_dash_rows_take(const rc_dash_rows *rows, int exponent, const rc_mask *fl
     const rc_dash_row *row = &rows->rows[i];
     for (int n = row->low; n <= row->high; n++) take(&rows->ground, row, n, exponent, flags);
   }
+  for (int i = 0; i < rows->alike_count; i++) {
+    rc_dash_row row = rc_dash_row_like(&rows->alike[i], &rows->alike[i]);
+    take(&rows->ground, &row, 0, exponent, flags);
+  }
 }
 
 rc_box rc_dash_laid_box(const rc_ground *ground, const rc_dash_row *row, const rc_dash_laid *laid,

@@ -14,20 +14,8 @@ static bool is_model(const rc_dash *of, const rc_dash *d) {
   return of->complete && of->contrast > LEAST_OF_CONTRAST * d->contrast;
 }
 
-/* A row through a dash, of dashes as another one is. */
-static rc_dash_row row_like(const rc_dash *like, const rc_dash *d) {
-  return (rc_dash_row){.u = d->u,
-                       .v = d->v,
-                       .a = like->a,
-                       .b = like->b,
-                       .period = LEAST_PERIOD * like->length,
-                       .length = like->length,
-                       .width = like->width,
-                       .contrast = d->contrast};
-}
-
 static bool is_one_of_some(const rc_dashes *dashes, const rc_dash *of, const rc_dash *d) {
-  rc_dash_row row = row_like(of, of);
+  rc_dash_row row = rc_dash_row_like(of, of);
   for (int i = 0; i < dashes->count; i++) {
     const rc_dash *other = &dashes->found[i];
     if (other != of && is_model(other, d) &&
@@ -43,7 +31,7 @@ static const rc_dash *whole_of(const rc_dashes *dashes, const rc_dash *d, rc_das
   const rc_dash *like = NULL;
   for (int i = 0; i < dashes->count; i++) {
     const rc_dash *of = &dashes->found[i];
-    rc_dash_row whole = row_like(of, d);
+    rc_dash_row whole = rc_dash_row_like(of, d);
     rc_dash_rest found;
     if ((!like || of->w > like->w) && is_model(of, d) &&
         fabs(of->a * d->a + of->b * d->b) > RC_DASHES_PARALLEL &&
@@ -99,7 +87,7 @@ static const rc_dash *find_other(const rc_dashes *dashes, const rc_dash_rest *re
 static bool is_of_line(const rc_dashes *dashes, const rc_dash *d, const rc_dash_row *row) {
   for (int i = 0; i < dashes->count; i++) {
     const rc_dash *line = &dashes->found[i];
-    rc_dash_row along = row_like(line, line);
+    rc_dash_row along = rc_dash_row_like(line, line);
     along.length = row->length;
     if (!line->complete && line->length > RC_DASHES_MOST_LONGER * row->length &&
         fabs(line->a * row->a + line->b * row->b) > RC_DASHES_PARALLEL &&
@@ -121,6 +109,14 @@ static bool is_known(const rc_dash_rows *rows, const rc_dash *d) {
   return false;
 }
 
+/* Those that are as one is copied nowhere else, either. */
+static void keep_in_place(const rc_dashes *dashes, const rc_dash *like, rc_dash_rows *rows) {
+  rc_dash_row row = rc_dash_row_like(like, like);
+  for (int i = 0; i < dashes->count && rows->alike_count < RC_MOST_DASHES; i++)
+    if (dashes->found[i].complete && rc_dash_is_like(&row, &dashes->found[i]))
+      rows->alike[rows->alike_count++] = dashes->found[i];
+}
+
 recede_status rc_dash_rows_add_lone(rc_context *context, const rc_dash_sight *sight,
                                     const rc_mask *flags, rc_dash_rows *rows) {
   const rc_dashes *dashes = &sight->dashes;
@@ -132,6 +128,7 @@ recede_status rc_dash_rows_add_lone(rc_context *context, const rc_dash_sight *si
     const rc_dash *like =
         d->complete || is_known(rows, d) ? NULL : whole_of(dashes, d, &row, &rest);
     if (!like) continue;
+    row.period = LEAST_PERIOD * row.length;
     const rc_dash *next = find_other(dashes, &rest, &row);
     if (!next) next = aim(dashes, like, &row);
     if (is_of_line(dashes, d, &row) || !rc_dash_row_is_plain(sight, &row, 0, 0) ||
@@ -142,6 +139,7 @@ recede_status rc_dash_rows_add_lone(rc_context *context, const rc_dash_sight *si
         rc_dash_is_to_go(&sight->ground, flags, sight->exponent, &own, 0))
       continue;
     rows->rows[rows->count++] = own;
+    keep_in_place(dashes, like, rows);
   }
   return rc_poll(context);
 }

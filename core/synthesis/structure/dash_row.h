@@ -70,6 +70,17 @@ static inline bool rc_dash_lies_on(const rc_dash_row *row, double u, double v, d
          RC_DASHES_OFF_LINE * row->length + RC_DASHES_OFF_LINE_PX / w;
 }
 
+/* A row through a dash, of dashes as another one is; its period is not known. */
+static inline rc_dash_row rc_dash_row_like(const rc_dash *like, const rc_dash *d) {
+  return (rc_dash_row){.u = d->u,
+                       .v = d->v,
+                       .a = like->a,
+                       .b = like->b,
+                       .length = like->length,
+                       .width = like->width,
+                       .contrast = d->contrast};
+}
+
 /* What is left of a dash of a row that the hole or the picture's end cuts. */
 typedef struct rc_dash_rest {
   double u, v; /* its middle */

@@ -37,7 +37,9 @@ typedef struct rc_dash_row {
 typedef struct rc_dash_rows {
   rc_ground ground; /* turned by what they show */
   rc_dash_row rows[RC_MOST_DASH_ROWS];
-  int count, told; /* all; those of more than a dash that lies alone, the first */
+  int count, told;               /* all; those of more than a dash that lies alone, the first */
+  rc_dash alike[RC_MOST_DASHES]; /* that lie in no row, but are as one that lies alone was */
+  int alike_count;
 } rc_dash_rows;
 
 /* image and flags: a level 2^exponent times coarser than the finest. */
