@@ -90,16 +90,18 @@ sanitized() {
   meson_test "$label" "" "$folder" --timeout-multiplier 6 "${selection[@]}"
 }
 
-# gimp HOST PREFIX FOLDER: its tests, of which there must be some.
+# gimp HOST PREFIX FOLDER ARGUMENT...: its tests, of which there must be some.
 gimp() {
-  meson_test "gimp$1" "$2" "$3" --suite "gimp$1" --no-suite fast --timeout-multiplier 2
-  [ -e "$logs/gimp$1.testlog.json" ] && return
-  cp "$logs/gimp$1.out" "$logs/gimp$1-tests.log"
-  echo "gimp$1-tests: no test ran in GIMP $1" >>"$logs/failed-steps"
+  local host=$1 prefix=$2 folder=$3
+  shift 3
+  meson_test "gimp$host" "$prefix" "$folder" --suite "gimp$host" --timeout-multiplier 2 "$@"
+  [ -e "$logs/gimp$host.testlog.json" ] && return
+  cp "$logs/gimp$host.out" "$logs/gimp$host-tests.log"
+  echo "gimp$host-tests: no test ran in GIMP $host" >>"$logs/failed-steps"
 }
 
 gimp2() {
-  gimp 2 "" build
+  gimp 2 "" build --no-suite fast
 }
 
 gimp3() {
