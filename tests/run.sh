@@ -90,11 +90,11 @@ sanitized() {
   meson_test "$label" "" "$folder" --timeout-multiplier 6 "${selection[@]}"
 }
 
-# gimp HOST PREFIX FOLDER ARGUMENT...: its tests, of which there must be some.
+# gimp HOST INSIDE FOLDER ARGUMENT...: its tests, of which there must be some.
 gimp() {
-  local host=$1 prefix=$2 folder=$3
+  local host=$1 inside=$2 folder=$3
   shift 3
-  meson_test "gimp$host" "$prefix" "$folder" --suite "gimp$host" --timeout-multiplier 2 "$@"
+  meson_test "gimp$host" "$inside" "$folder" --suite "gimp$host" --timeout-multiplier 2 "$@"
   [ -e "$logs/gimp$host.testlog.json" ] && return
   cp "$logs/gimp$host.out" "$logs/gimp$host-tests.log"
   echo "gimp$host-tests: no test ran in GIMP $host" >>"$logs/failed-steps"
