@@ -10,15 +10,16 @@
 #define MOST_AWAY 10.
 #define MOST_LONGER 3.
 
-static bool is_model(const rc_dash *of, const rc_dash *d) {
-  return of->complete && of->contrast > LEAST_OF_CONTRAST * d->contrast;
+static bool stands_out_as(const rc_dash *of, const rc_dash *d) {
+  return of->contrast > LEAST_OF_CONTRAST * d->contrast;
 }
 
+/* Others, of which a part may be hidden. */
 static bool is_one_of_some(const rc_dashes *dashes, const rc_dash *of, const rc_dash *d) {
   rc_dash_row row = rc_dash_row_like(of, of);
   for (int i = 0; i < dashes->count; i++) {
     const rc_dash *other = &dashes->found[i];
-    if (other != of && is_model(other, d) &&
+    if (other != of && other != d && stands_out_as(other, d) &&
         rc_dashes_alike(&row, other->length, other->a, other->b))
       return true;
   }
@@ -33,7 +34,7 @@ static const rc_dash *whole_of(const rc_dashes *dashes, const rc_dash *d, rc_das
     const rc_dash *of = &dashes->found[i];
     rc_dash_row whole = rc_dash_row_like(of, d);
     rc_dash_rest found;
-    if ((!like || of->w > like->w) && is_model(of, d) &&
+    if (of->complete && stands_out_as(of, d) && (!like || of->w > like->w) &&
         fabs(of->a * d->a + of->b * d->b) > RC_DASHES_PARALLEL &&
         rc_dash_rest_of(&whole, d, &found) && is_one_of_some(dashes, of, d))
       like = of, *row = whole, *rest = found;
